@@ -1,0 +1,108 @@
+"""The explanation of one decision, those that did nothing too.
+
+The body is deterministic: it holds nothing that a clock or a random source gave, so that a
+replay of the same input writes the same bytes.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+from agent_server.domain.command import Command
+from agent_server.domain.motion import Quality
+
+
+class Outcome(StrEnum):
+    """What a decision came to."""
+
+    COMMAND = "command"
+    IDLE = "idle"
+    UNSURE = "unsure"
+    COOLING_DOWN = "cooling_down"
+    HANDLED = "handled"
+    GATED = "gated"
+    BUSY = "busy"
+    NOTHING_TO_DO = "nothing_to_do"
+
+
+@dataclass(frozen=True, slots=True)
+class GateVerdict:
+    """What the affect gate said.
+
+    Attributes:
+        mode: ``required``, ``optional``, ``off`` or ``thesis``.
+        is_open: Whether a discomfort gesture may pass.
+        reason: Why, in a few words.
+        valence: In [-10, 10], or None without a usable face.
+        arousal: In [-10, 10], or None without a usable face.
+        age_ms: Time from the face to the end of the window, or None.
+    """
+
+    mode: str
+    is_open: bool
+    reason: str
+    valence: float | None
+    arousal: float | None
+    age_ms: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class SceneVerdict:
+    """What the room had to say to a gesture.
+
+    Attributes:
+        mode: What the agent was doing.
+        rule: Name of the rule that matched, or None.
+        precondition: The rule's precondition, for example ``window = open``, or None.
+        met: Whether it held.
+        reason: Why, in a few words.
+    """
+
+    mode: str
+    rule: str | None
+    precondition: str | None
+    met: bool
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """One decision and everything that led to it.
+
+    Attributes:
+        id: Session id and counter.
+        index: Counts the session's decisions from 0.
+        window: Index of the window.
+        start_ns: Capture time of the window's first frame.
+        end_ns: Capture time of the window's last frame.
+        body_id: Whose motion it was.
+        models: Bundle name -> first 12 hexadecimal digits of its hash.
+        quality: How far the window could be trusted.
+        forecast: Name of the predictor, or ``last_frame``.
+        forecast_failure: Why the predictor was not used, or None.
+        probabilities: Label -> probability.
+        gesture: The gesture that is held to be going on, ``idle`` if none.
+        gate: What the affect gate said.
+        scene: What the room said, or None when it was not asked.
+        outcome: What it came to.
+        reason: One sentence for people.
+        command: The command, or None.
+    """
+
+    id: str
+    index: int
+    window: int
+    start_ns: int
+    end_ns: int
+    body_id: int
+    models: Mapping[str, str]
+    quality: Quality
+    forecast: str
+    forecast_failure: str | None
+    probabilities: Mapping[str, float]
+    gesture: str
+    gate: GateVerdict
+    scene: SceneVerdict | None
+    outcome: Outcome
+    reason: str
+    command: Command | None

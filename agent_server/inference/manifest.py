@@ -1,0 +1,131 @@
+"""The manifest of a model bundle: what a model expects, what it is, and how it was made.
+
+A bundle is a folder ``NAME/`` with ``model.onnx``, ``manifest.json``, ``golden.npz`` (inputs
+and the outputs that the model must give for them) and ``CARD.md``.
+"""
+
+import hashlib
+from pathlib import Path
+from typing import Any, Literal
+
+import msgspec
+
+from agent_server.errors import BundleError
+
+FORMAT_VERSION = 1
+MODEL_FILE = "model.onnx"
+GOLDEN_FILE = "golden.npz"
+CARD_FILE = "CARD.md"
+MANIFEST_FILE = "manifest.json"
+HASHED_FILES = (MODEL_FILE, GOLDEN_FILE, CARD_FILE)
+
+
+class DataSource(msgspec.Struct, frozen=True):
+    """One set that a model was trained on."""
+
+    name: str
+    licence: str
+    synthetic: bool
+
+
+class Training(msgspec.Struct, frozen=True):
+    """How a model was made."""
+
+    command: str
+    seed: int
+    data: list[DataSource]
+    wall_s: float
+    hardware: str
+
+
+class Manifest(msgspec.Struct, frozen=True):
+    """The content of ``manifest.json``.
+
+    Attributes:
+        format_version: Version of this layout.
+        name: Name of the bundle, the same as its folder's.
+        version: Version of the model.
+        task: ``predict`` (seen -> future positions) or ``classify`` (motion -> probabilities).
+        skeleton: ``core9``.
+        rate_hz: Frames a second of input and output.
+        input_frames: Frames the model takes.
+        output_frames: Frames it gives (0 for a classifier).
+        labels: Class names in output order (empty for a predictor).
+        normaliser: ``navel_last_seen``: metres, origin at the navel of the last seen frame.
+        opset: ONNX operator set.
+        parameters: Number of trained parameters.
+        batch_exact: Whether a row of a batch has the bits of a batch of one.
+        files: File name -> SHA-256 in hexadecimal.
+        licence: Licence of the weights.
+        training: How it was made.
+        results: Measured figures, by name.
+    """
+
+    format_version: int
+    name: str
+    version: str
+    task: Literal["predict", "classify"]
+    skeleton: Literal["core9"]
+    rate_hz: int
+    input_frames: int
+    output_frames: int
+    labels: list[str]
+    normaliser: Literal["navel_last_seen"]
+    opset: int
+    parameters: int
+    batch_exact: bool
+    files: dict[str, str]
+    licence: str
+    training: Training
+    results: dict[str, Any]
+
+
+def sha256_of(path: Path) -> str:
+    """SHA-256 of a file in hexadecimal."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def read_manifest(folder: Path) -> Manifest:
+    """Read and check the manifest of the bundle in ``folder``, hashes included.
+
+    Raises:
+        BundleError: If a file is missing, altered, or the manifest does not fit its schema.
+    """
+    path = folder / MANIFEST_FILE
+    try:
+        manifest = msgspec.json.decode(path.read_bytes(), type=Manifest)
+    except FileNotFoundError:
+        raise BundleError(
+            f"no {MANIFEST_FILE} in {folder}: a bundle is a folder with {MODEL_FILE}, "
+            f"{MANIFEST_FILE}, {GOLDEN_FILE} and {CARD_FILE}"
+        ) from None
+    except msgspec.MsgspecError as error:
+        raise BundleError(f"{path} is not a valid manifest: {error}") from error
+    if manifest.format_version != FORMAT_VERSION:
+        raise BundleError(
+            f"{path} has format version {manifest.format_version}, this server reads "
+            f"{FORMAT_VERSION}: export the model again"
+        )
+    for name in HASHED_FILES:
+        expected = manifest.files.get(name)
+        if expected is None:
+            raise BundleError(f"{path} gives no hash for {name}: export the model again")
+        try:
+            actual = sha256_of(folder / name)
+        except FileNotFoundError:
+            raise BundleError(f"{folder / name} is missing: export the model again") from None
+        if actual != expected:
+            raise BundleError(
+                f"{folder / name} was altered: its SHA-256 is {actual[:12]}..., the manifest says "
+                f"{expected[:12]}...; restore the file or export the model again"
+            )
+    return manifest
+
+
+def write_manifest(folder: Path, manifest: Manifest) -> None:
+    """Write ``manifest.json`` into ``folder``, with the hashes of the files beside it."""
+    filled = msgspec.structs.replace(
+        manifest, files={name: sha256_of(folder / name) for name in HASHED_FILES}
+    )
+    data = msgspec.json.format(msgspec.json.encode(filled), indent=2)
+    (folder / MANIFEST_FILE).write_bytes(data + b"\n")

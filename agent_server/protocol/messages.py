@@ -1,0 +1,350 @@
+"""Every message of protocol 1, as msgspec types.
+
+A message is a map with a ``type`` tag. Unknown fields are ignored, so that a minor version
+may add some. Time stamps are integer nanoseconds; positions are metres in the camera frame
+unless a skeleton's format says otherwise; valence and arousal lie in [-10, 10].
+"""
+
+from typing import Annotated, Literal
+
+import msgspec
+from msgspec import Meta
+
+from agent_server.domain.affect import AFFECT_LIMIT
+from agent_server.domain.stamp import MAX_STAMP_NS
+
+PROTOCOL = "1.0"
+PROTOCOL_MAJOR = 1
+SUBPROTOCOL_JSON = "agent-server.v1.json"
+SUBPROTOCOL_MSGPACK = "agent-server.v1.msgpack"
+
+Role = Literal["sensor", "renderer", "monitor"]
+Nanoseconds = Annotated[int, Meta(ge=0, le=MAX_STAMP_NS)]
+Level = Annotated[float, Meta(ge=-AFFECT_LIMIT, le=AFFECT_LIMIT)]
+Name = Annotated[str, Meta(min_length=1, max_length=64)]
+Text = Annotated[str, Meta(max_length=500)]
+Point = tuple[float, float, float]
+JointSample = tuple[float, float, float, float]
+
+
+class Message(msgspec.Struct, frozen=True, omit_defaults=True, tag_field="type"):
+    """Base of all messages."""
+
+
+# --------------------------------------------------------------------------- both ways
+
+
+class Ping(Message, tag="ping"):
+    """Asks for a pong with the same ``sent_ns``."""
+
+    sent_ns: Nanoseconds
+
+
+class Pong(Message, tag="pong"):
+    """Answers a ping. ``time_ns`` is the answering side's own monotonic clock."""
+
+    sent_ns: Nanoseconds
+    time_ns: Nanoseconds
+
+
+# --------------------------------------------------------------------------- client to server
+
+
+class Hello(Message, tag="hello"):
+    """First message on every connection.
+
+    ``face`` is what a sensor knows of the face: ``expected`` when affect follows, ``none``
+    for a headset. ``time`` is wall time in ISO 8601, for people.
+    """
+
+    protocol: Annotated[str, Meta(pattern=r"^\d+\.\d+$")]
+    client: Name
+    client_version: Annotated[str, Meta(max_length=64)] = ""
+    token: Annotated[str, Meta(max_length=4096)] | None = None
+    face: Literal["expected", "none"] = "expected"
+    mirror: bool = False
+    take_over: bool = False
+    time: Annotated[str, Meta(max_length=64)] | None = None
+
+
+class Skeleton(Message, tag="skeleton"):
+    """One body at one instant (JSON coding)."""
+
+    originating_ns: Nanoseconds
+    body_id: Annotated[int, Meta(ge=0, le=MAX_STAMP_NS)]
+    format: Name
+    joints: Annotated[list[JointSample], Meta(max_length=64)]
+
+
+class PackedSkeleton(Message, tag="skeleton"):
+    """One body at one instant (MessagePack coding).
+
+    ``joints`` holds x, y, z, confidence of every joint as little-endian float32.
+    """
+
+    originating_ns: Nanoseconds
+    body_id: Annotated[int, Meta(ge=0, le=MAX_STAMP_NS)]
+    format: Name
+    joints: Annotated[bytes, Meta(max_length=64 * 16)]
+
+
+class Affect(Message, tag="affect"):
+    """One estimate of the person's affect."""
+
+    originating_ns: Nanoseconds
+    valence: Level
+    arousal: Level
+
+
+class AckMessage(Message, tag="ack"):
+    """A renderer's word on a command."""
+
+    command_id: Annotated[str, Meta(min_length=1, max_length=160)]
+    status: Literal["accepted", "started", "progress", "done", "failed"]
+    step: Annotated[int, Meta(ge=0, le=1000)] | None = None
+    reason: Text | None = None
+
+
+class SceneEvent(Message, tag="scene_event"):
+    """Somebody changed an object of the room by hand."""
+
+    object: Name
+    state: Name
+
+
+# --------------------------------------------------------------------------- server to client
+
+
+class ModelInfo(msgspec.Struct, frozen=True):
+    """A model in use."""
+
+    name: str
+    task: str
+    sha256: str
+
+
+class GateLevels(msgspec.Struct, frozen=True):
+    """Thresholds of the affect gate, so that a client can draw them."""
+
+    mode: str
+    enter_valence: float
+    enter_arousal: float
+    leave_valence: float
+    leave_arousal: float
+
+
+class Limits(msgspec.Struct, frozen=True):
+    """What the server takes from a client."""
+
+    max_message_bytes: int
+    max_errors: int
+
+
+class SceneState(Message, tag="scene"):
+    """The room: the agent's mode, each object's state, the command being carried out."""
+
+    mode: str
+    objects: dict[str, str]
+    command_id: str | None = None
+
+
+class Welcome(Message, tag="welcome"):
+    """Answers hello when the client may stay."""
+
+    protocol: str
+    server: str
+    server_version: str
+    session: str
+    role: Role
+    epoch: str
+    sequence: int
+    heartbeat_s: float
+    labels: list[str]
+    gate: GateLevels
+    limits: Limits
+    models: list[ModelInfo]
+    scene: SceneState
+
+
+class ErrorMessage(Message, tag="error"):
+    """Something the client sent was refused. ``fatal`` announces that the connection closes."""
+
+    code: str
+    message: str
+    field: str | None = None
+    fatal: bool = False
+
+
+class StepMessage(msgspec.Struct, frozen=True, omit_defaults=True):
+    """One action of a reaction; ``duration_s`` is nominal."""
+
+    action: str
+    duration_s: float
+    target: str | None = None
+
+
+class CommandMessage(Message, tag="command"):
+    """An order to the renderer. The same ``id`` is carried out once."""
+
+    id: str
+    sequence: int
+    epoch: str
+    reaction: str
+    cause: str
+    steps: list[StepMessage]
+    priority: int
+    originating_ns: int
+    issued_ns: int
+    ttl_ms: int
+    preempts: str | None = None
+
+
+class PoseMessage(Message, tag="pose"):
+    """Telemetry: the nine core joints as observed, at 25 Hz; each is x, y, z, confidence."""
+
+    originating_ns: int
+    body_id: int
+    joints: list[JointSample]
+
+
+class ForecastMessage(Message, tag="forecast"):
+    """Telemetry: the expected motion after a window, 50 frames of nine points at 25 Hz."""
+
+    window: int
+    originating_ns: int
+    source: str
+    positions: list[list[Point]]
+
+
+class AffectTelemetry(Message, tag="affect_state"):
+    """Telemetry: the affect as it came in."""
+
+    originating_ns: int
+    valence: float
+    arousal: float
+
+
+class AckTelemetry(Message, tag="ack_state"):
+    """Telemetry: what the renderer said of a command."""
+
+    command_id: str
+    status: str
+    step: int | None = None
+    reason: str | None = None
+
+
+class QualityBody(msgspec.Struct, frozen=True):
+    """How far the window could be trusted."""
+
+    measured: float
+    filled: float
+    bone_deviation: float
+    warnings: list[str]
+
+
+class GateBody(msgspec.Struct, frozen=True):
+    """What the affect gate said; null without a usable face."""
+
+    mode: str
+    is_open: bool
+    reason: str
+    valence: float | None
+    arousal: float | None
+    age_ms: float | None
+
+
+class SceneBody(msgspec.Struct, frozen=True):
+    """What the room said to the gesture."""
+
+    mode: str
+    rule: str | None
+    precondition: str | None
+    met: bool
+    reason: str
+
+
+class CommandBody(msgspec.Struct, frozen=True):
+    """The command in a decision, without what only its delivery knows."""
+
+    id: str
+    sequence: int
+    reaction: str
+    cause: str
+    steps: list[StepMessage]
+    priority: int
+    preempts: str | None
+    originating_ns: int
+    issued_ns: int
+    ttl_ms: int
+
+
+class DecisionBody(msgspec.Struct, frozen=True):
+    """A decision with its reasons. Deterministic: the line of a decision log."""
+
+    id: str
+    index: int
+    window: int
+    start_ns: int
+    end_ns: int
+    body_id: int
+    models: dict[str, str]
+    quality: QualityBody
+    forecast: str
+    forecast_failure: str | None
+    probabilities: dict[str, float]
+    gesture: str
+    gate: GateBody
+    scene: SceneBody | None
+    outcome: str
+    reason: str
+    command: CommandBody | None
+
+
+class Timing(msgspec.Struct, frozen=True):
+    """Where the time of one decision went, in milliseconds, and when it was made."""
+
+    wall: str
+    wait_ms: float
+    predict_ms: float
+    classify_ms: float
+    decide_ms: float
+    total_ms: float
+
+
+class DecisionMessage(Message, tag="decision"):
+    """Telemetry: one decision and its timing."""
+
+    decision: DecisionBody
+    timing: Timing
+
+
+class StatsMessage(Message, tag="stats"):
+    """Telemetry: the session's counters since its start."""
+
+    frames: int
+    windows: int
+    decisions: int
+    commands: int
+    skipped_windows: int
+    predictor_failures: int
+    rejected_messages: int
+    missed_telemetry: int
+    counters: dict[str, int]
+
+
+ClientMessage = Hello | Ping | Pong | Skeleton | Affect | AckMessage | SceneEvent
+PackedClientMessage = Hello | Ping | Pong | PackedSkeleton | Affect | AckMessage | SceneEvent
+ServerMessage = (
+    Welcome
+    | ErrorMessage
+    | Ping
+    | Pong
+    | CommandMessage
+    | SceneState
+    | PoseMessage
+    | ForecastMessage
+    | AffectTelemetry
+    | AckTelemetry
+    | DecisionMessage
+    | StatsMessage
+)
