@@ -1,0 +1,195 @@
+"""Settings: frozen values that refuse contradictions with a sentence.
+
+Defaults are sane; a TOML file may override any of them, section by section.
+"""
+
+import tomllib
+from pathlib import Path
+from typing import Literal
+
+import msgspec
+
+from agent_server.errors import ConfigError
+
+
+class _Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Base of every section: unknown keys are refused."""
+
+
+def _require(condition: bool, sentence: str) -> None:
+    if not condition:
+        raise ValueError(sentence)
+
+
+class WindowSettings(_Section, frozen=True):
+    """When a second of motion is handed to the models.
+
+    Attributes:
+        mode: ``sliding`` (a window every ``hop_frames``) or ``thesis`` (every 25 frames, no
+            overlap, and one window is enough for a decision).
+        hop_frames: Frames at 25 Hz between two windows in sliding mode.
+        max_gap_ms: A longer gap between two frames empties the window.
+    """
+
+    mode: Literal["sliding", "thesis"] = "sliding"
+    hop_frames: int = 5
+    max_gap_ms: int = 250
+
+    def __post_init__(self) -> None:
+        _require(1 <= self.hop_frames <= 25, "hop_frames must lie in 1..25")
+        _require(40 <= self.max_gap_ms <= 2000, "max_gap_ms must lie in 40..2000")
+
+    @property
+    def hop(self) -> int:
+        """Frames between two windows."""
+        return 25 if self.mode == "thesis" else self.hop_frames
+
+
+class SubjectSettings(_Section, frozen=True):
+    """Which body is followed.
+
+    Attributes:
+        policy: ``nearest`` to the sensor, ``first`` seen, or ``explicit``.
+        body_id: The body to follow when the policy is ``explicit``.
+        release_s: After this long without a frame another body may be followed.
+        lost_s: After this long without a frame the body counts as gone.
+    """
+
+    policy: Literal["nearest", "first", "explicit"] = "nearest"
+    body_id: int | None = None
+    release_s: float = 1.0
+    lost_s: float = 2.0
+
+    def __post_init__(self) -> None:
+        _require(
+            (self.policy == "explicit") == (self.body_id is not None),
+            "body_id goes with policy = 'explicit' and with no other",
+        )
+        _require(0 < self.release_s <= self.lost_s, "release_s must lie in 0..lost_s")
+
+
+class GateSettings(_Section, frozen=True):
+    """When a discomfort gesture may pass, on the [-10, 10] scale (thesis, section 5).
+
+    Attributes:
+        mode: ``required`` (no usable face: closed), ``optional`` (no usable face: open),
+            ``off`` (always open) or ``thesis`` (required, without hysteresis).
+        enter_valence: Opens below this valence ...
+        enter_arousal: ... and above this absolute arousal.
+        leave_valence: Closes above this valence ...
+        leave_arousal: ... or below this absolute arousal.
+        pleasant_valence: Never open above this valence.
+        max_age_ms: A face older than this is not used.
+    """
+
+    mode: Literal["required", "optional", "off", "thesis"] = "required"
+    enter_valence: float = -3.0
+    enter_arousal: float = 3.0
+    leave_valence: float = -2.0
+    leave_arousal: float = 2.0
+    pleasant_valence: float = 0.0
+    max_age_ms: int = 1000
+
+    def __post_init__(self) -> None:
+        _require(
+            self.enter_valence <= self.leave_valence <= self.pleasant_valence,
+            "enter_valence <= leave_valence <= pleasant_valence must hold",
+        )
+        _require(
+            0 <= self.leave_arousal <= self.enter_arousal,
+            "0 <= leave_arousal <= enter_arousal must hold",
+        )
+        _require(self.max_age_ms > 0, "max_age_ms must be positive")
+
+
+class DecideSettings(_Section, frozen=True):
+    """How probabilities become one decision a gesture.
+
+    Attributes:
+        enter: A gesture is a candidate from this probability on.
+        leave: A gesture that is going on ends below this probability.
+        enter_windows: Windows in a row that a candidate needs.
+        leave_windows: Windows in a row below ``leave`` that end a gesture.
+        cooldown_s: The same gesture cannot start again for this long after its end.
+    """
+
+    enter: float = 0.6
+    leave: float = 0.4
+    enter_windows: int = 3
+    leave_windows: int = 2
+    cooldown_s: float = 2.0
+
+    def __post_init__(self) -> None:
+        _require(0 < self.leave <= self.enter < 1, "0 < leave <= enter < 1 must hold")
+        _require(self.enter_windows >= 1, "enter_windows must be at least 1")
+        _require(self.leave_windows >= 1, "leave_windows must be at least 1")
+        _require(self.cooldown_s >= 0, "cooldown_s must not be negative")
+
+
+class ServerSettings(_Section, frozen=True):
+    """The process and what it takes from clients.
+
+    Attributes:
+        host: Address to listen on.
+        port: Port to listen on; 0 lets the system choose.
+        max_sessions: Sessions at once; more are refused.
+        max_message_bytes: A longer message is refused.
+        max_errors: Bad messages that a connection may have open; good ones pay them back.
+        hello_timeout_s: A client that has not said hello by then is sent away.
+        heartbeat_s: How often a client ought to ping.
+        command_queue: Commands that may wait for a slow renderer.
+        session_linger_s: A session without connections is kept this long.
+    """
+
+    host: str = "127.0.0.1"
+    port: int = 8765
+    max_sessions: int = 256
+    max_message_bytes: int = 64 * 1024
+    max_errors: int = 20
+    hello_timeout_s: float = 10.0
+    heartbeat_s: float = 5.0
+    command_queue: int = 64
+    session_linger_s: float = 60.0
+
+    def __post_init__(self) -> None:
+        _require(0 <= self.port <= 65535, "port must lie in 0..65535")
+        _require(self.max_message_bytes >= 4096, "max_message_bytes must be at least 4096")
+        for name in ("max_sessions", "max_errors", "hello_timeout_s", "heartbeat_s"):
+            _require(getattr(self, name) > 0, f"{name} must be positive")
+        _require(self.command_queue >= 1, "command_queue must be at least 1")
+        _require(self.session_linger_s >= 0, "session_linger_s must not be negative")
+
+
+class Settings(_Section, frozen=True):
+    """All settings.
+
+    Attributes:
+        rules: Path of the room's rule file; None takes the one that ships.
+    """
+
+    window: WindowSettings = WindowSettings()
+    subject: SubjectSettings = SubjectSettings()
+    gate: GateSettings = GateSettings()
+    decide: DecideSettings = DecideSettings()
+    server: ServerSettings = ServerSettings()
+    rules: str | None = None
+
+
+def load_settings(path: Path | None) -> Settings:
+    """Read settings from a TOML file; None gives the defaults.
+
+    Raises:
+        ConfigError: If the file cannot be read or a setting is refused; the text names it.
+    """
+    if path is None:
+        return Settings()
+    try:
+        table = tomllib.loads(path.read_text("utf-8"))
+    except OSError as error:
+        raise ConfigError(f"cannot read {path}: {error.strerror}") from error
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path} is not valid TOML: {error}") from error
+    try:
+        return msgspec.convert(table, Settings)
+    except msgspec.ValidationError as error:
+        raise ConfigError(f"{path}: {error}") from error

@@ -1,0 +1,60 @@
+"""What the stages need of a model. The real ones run on onnxruntime; tests bring small fakes."""
+
+from typing import Protocol
+
+from agent_server.domain.arrays import Float32
+
+
+class Model(Protocol):
+    """A model with a name and the hash of its weights."""
+
+    @property
+    def name(self) -> str:
+        """Name of the bundle."""
+        ...
+
+    @property
+    def sha256(self) -> str:
+        """SHA-256 of the model file in hexadecimal."""
+        ...
+
+
+class Predictor(Model, Protocol):
+    """Continues a motion."""
+
+    def predict(self, seen: Float32) -> Float32:
+        """Predict two seconds.
+
+        Args:
+            seen: Shape (B, 25, 9, 3), normalised.
+
+        Returns:
+            Shape (B, 50, 9, 3), in the same frame.
+
+        Raises:
+            InferenceError: If the model fails or gives something that is not finite.
+        """
+        ...
+
+
+class Classifier(Model, Protocol):
+    """Names a motion."""
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Class names in output order; ``idle`` is one of them."""
+        ...
+
+    def classify(self, motion: Float32) -> Float32:
+        """Give class probabilities.
+
+        Args:
+            motion: Shape (B, 75, 9, 3), normalised.
+
+        Returns:
+            Shape (B, C), rows that sum to 1.
+
+        Raises:
+            InferenceError: If the model fails or gives something that is not finite.
+        """
+        ...
