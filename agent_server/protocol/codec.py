@@ -1,0 +1,118 @@
+"""The two codings of a message: JSON text and MessagePack bytes."""
+
+from typing import Protocol
+
+import msgspec
+
+from agent_server.errors import InvalidInput
+from agent_server.protocol.messages import (
+    SUBPROTOCOL_JSON,
+    SUBPROTOCOL_MSGPACK,
+    ClientMessage,
+    Message,
+    PackedClientMessage,
+    ServerMessage,
+)
+
+Wire = str | bytes
+
+
+class Codec(Protocol):
+    """Turns messages into what a websocket carries, and back."""
+
+    @property
+    def subprotocol(self) -> str:
+        """Name of the websocket subprotocol."""
+        ...
+
+    def encode(self, message: Message) -> Wire:
+        """Encode one message."""
+        ...
+
+    def decode_client(self, data: Wire) -> Message:
+        """Decode what a client sent.
+
+        Raises:
+            InvalidInput: With the field and what was expected.
+        """
+        ...
+
+    def decode_server(self, data: Wire) -> Message:
+        """Decode what a server sent.
+
+        Raises:
+            InvalidInput: With the field and what was expected.
+        """
+        ...
+
+
+class JsonCodec:
+    """Text messages."""
+
+    subprotocol = SUBPROTOCOL_JSON
+
+    def __init__(self) -> None:
+        self._encoder = msgspec.json.Encoder()
+        self._client = msgspec.json.Decoder(ClientMessage)
+        self._server = msgspec.json.Decoder(ServerMessage)
+
+    def encode(self, message: Message) -> str:
+        return self._encoder.encode(message).decode()
+
+    def decode_client(self, data: Wire) -> Message:
+        if isinstance(data, bytes):
+            raise InvalidInput(
+                f"this connection speaks {SUBPROTOCOL_JSON}, whose messages are text; got "
+                f"{len(data)} bytes of binary",
+                code="wrong_coding",
+            )
+        return _decoded(self._client, data)
+
+    def decode_server(self, data: Wire) -> Message:
+        return _decoded(self._server, data)
+
+
+class MsgpackCodec:
+    """Binary messages, with joints as packed float32."""
+
+    subprotocol = SUBPROTOCOL_MSGPACK
+
+    def __init__(self) -> None:
+        self._encoder = msgspec.msgpack.Encoder()
+        self._client = msgspec.msgpack.Decoder(PackedClientMessage)
+        self._server = msgspec.msgpack.Decoder(ServerMessage)
+
+    def encode(self, message: Message) -> bytes:
+        return self._encoder.encode(message)
+
+    def decode_client(self, data: Wire) -> Message:
+        if isinstance(data, str):
+            raise InvalidInput(
+                f"this connection speaks {SUBPROTOCOL_MSGPACK}, whose messages are binary; got "
+                f"{len(data)} characters of text",
+                code="wrong_coding",
+            )
+        return _decoded(self._client, data)
+
+    def decode_server(self, data: Wire) -> Message:
+        return _decoded(self._server, data)
+
+
+CODECS: dict[str, Codec] = {codec.subprotocol: codec for codec in (JsonCodec(), MsgpackCodec())}
+"""Every coding, by the name of its websocket subprotocol."""
+
+
+class _Decoder(Protocol):
+    def decode(self, data: Wire, /) -> Message: ...
+
+
+def _decoded(decoder: _Decoder, data: Wire) -> Message:
+    try:
+        return decoder.decode(data)
+    except msgspec.ValidationError as error:
+        sentence, _, path = str(error).partition(" - at `")
+        field = path.rstrip("`").removeprefix("$").removeprefix(".") or None
+        code = "unknown_type" if field == "type" else "invalid_field"
+        raise InvalidInput(sentence, field=field, code=code) from None
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
+        raise InvalidInput(f"the message cannot be read: {error}", code="malformed") from None

@@ -1,0 +1,191 @@
+"""The server's side of one connection, without any input or output.
+
+The shell feeds what a websocket received into :meth:`ServerConnection.receive` and acts on the
+event that comes back. State changes in one place, :meth:`ServerConnection._enter`.
+"""
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from agent_server.errors import InvalidInput
+from agent_server.protocol import messages as m
+from agent_server.protocol.codec import Codec, Wire
+
+CLOSE_NORMAL = 1000
+CLOSE_GOING_AWAY = 1001
+CLOSE_BAD_HELLO = 4400
+CLOSE_WRONG_VERSION = 4401
+CLOSE_HELLO_TIMEOUT = 4408
+CLOSE_REPLACED = 4409
+CLOSE_TOO_SLOW = 4413
+CLOSE_TOO_MANY_ERRORS = 4422
+CLOSE_FULL = 4429
+
+FORGIVENESS = 0.1
+"""How much of an error a good message pays back: below one bad message in ten nobody is cut."""
+
+
+class State(Enum):
+    """Life of a connection."""
+
+    OPENING = auto()
+    OPEN = auto()
+    CLOSED = auto()
+
+
+_NEXT = {
+    State.OPENING: {State.OPEN, State.CLOSED},
+    State.OPEN: {State.CLOSED},
+    State.CLOSED: set[State](),
+}
+
+_ALLOWED: dict[m.Role, tuple[type[m.Message], ...]] = {
+    "sensor": (m.Skeleton, m.PackedSkeleton, m.Affect),
+    "renderer": (m.AckMessage, m.SceneEvent),
+    "monitor": (),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Greeted:
+    """The client said hello; answer with a welcome."""
+
+    hello: m.Hello
+
+
+@dataclass(frozen=True, slots=True)
+class Received:
+    """A message for the session."""
+
+    message: m.Message
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """Send this, and nothing else happened."""
+
+    message: m.Message
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """Send this error; close the connection when a close code is given."""
+
+    error: m.ErrorMessage
+    close_code: int | None = None
+
+
+Event = Greeted | Received | Reply | Refused | None
+
+
+class ServerConnection:
+    """One connection's protocol state.
+
+    Args:
+        role: What the client came as.
+        codec: The coding that was agreed.
+        max_message_bytes: Longer messages are refused.
+        max_errors: Errors that may be open before the connection is closed.
+    """
+
+    def __init__(
+        self, role: m.Role, codec: Codec, *, max_message_bytes: int, max_errors: int
+    ) -> None:
+        self.role = role
+        self.codec = codec
+        self.state = State.OPENING
+        self.rejected = 0
+        self._max_message_bytes = max_message_bytes
+        self._max_errors = max_errors
+        self._errors = 0.0
+        self._allowed = _ALLOWED[role]
+
+    def receive(self, data: Wire, now_ns: int) -> Event:
+        """Take one websocket message.
+
+        Args:
+            data: Text or bytes as received.
+            now_ns: The server's monotonic clock, for answering a ping.
+
+        Returns:
+            What it means, or None for a message that asks for nothing.
+        """
+        if len(data) > self._max_message_bytes:
+            return self.refuse(
+                InvalidInput(
+                    f"the message has {len(data)} bytes, the limit is {self._max_message_bytes}",
+                    code="too_large",
+                )
+            )
+        try:
+            message = self.codec.decode_client(data)
+            event = self._accept(message, now_ns)
+        except InvalidInput as error:
+            return self.refuse(error)
+        if self._errors > 0.0:
+            self._errors = max(0.0, self._errors - FORGIVENESS)
+        return event
+
+    def refuse(self, error: InvalidInput) -> Refused:
+        """Count an error that the client made, found here or further in."""
+        self.rejected += 1
+        self._errors += 1.0
+        close_code = None
+        message = str(error)
+        if self.state is State.OPENING:
+            close_code = CLOSE_WRONG_VERSION if error.code == "wrong_version" else CLOSE_BAD_HELLO
+        elif self._errors > self._max_errors:
+            close_code = CLOSE_TOO_MANY_ERRORS
+            message += f" (closing: more than {self._max_errors} errors are open)"
+        if close_code is not None:
+            self.close()
+        return Refused(
+            m.ErrorMessage(error.code, message, error.field, fatal=close_code is not None),
+            close_code,
+        )
+
+    def close(self) -> None:
+        """Note that the connection is over."""
+        if self.state is not State.CLOSED:
+            self._enter(State.CLOSED)
+
+    def _accept(self, message: m.Message, now_ns: int) -> Event:
+        if self.state is State.OPENING:
+            return self._greet(message)
+        match message:
+            case m.Ping(sent_ns=sent_ns):
+                return Reply(m.Pong(sent_ns, now_ns))
+            case m.Pong():
+                return None
+            case _ if isinstance(message, self._allowed):
+                return Received(message)
+        tag = message.__struct_config__.tag
+        raise InvalidInput(
+            f"a {self.role} does not send {tag!r} messages"
+            + (" twice" if isinstance(message, m.Hello) else ""),
+            field="type",
+            code="wrong_role",
+        )
+
+    def _greet(self, message: m.Message) -> Event:
+        if not isinstance(message, m.Hello):
+            raise InvalidInput(
+                f"the first message must be hello, got {message.__struct_config__.tag!r}",
+                field="type",
+                code="hello_expected",
+            )
+        major = int(message.protocol.partition(".")[0])
+        if major != m.PROTOCOL_MAJOR:
+            raise InvalidInput(
+                f"the client speaks protocol {message.protocol}, this server speaks "
+                f"{m.PROTOCOL}: use a client of major version {m.PROTOCOL_MAJOR}",
+                field="protocol",
+                code="wrong_version",
+            )
+        self._enter(State.OPEN)
+        return Greeted(message)
+
+    def _enter(self, state: State) -> None:
+        if state not in _NEXT[self.state]:
+            raise RuntimeError(f"a connection cannot go from {self.state} to {state}")
+        self.state = state

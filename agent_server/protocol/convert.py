@@ -1,0 +1,222 @@
+"""Between the wire and the domain. Everything that comes from outside is checked here."""
+
+import struct
+from functools import lru_cache
+from itertools import chain
+
+import numpy as np
+
+from agent_server.domain.affect import AffectSample
+from agent_server.domain.arrays import Float32
+from agent_server.domain.command import Ack, AckStatus, Command
+from agent_server.domain.decision import Decision
+from agent_server.domain.motion import Forecast
+from agent_server.domain.scene import SceneSnapshot
+from agent_server.domain.skeleton import CoreFrame, SkeletonFrame
+from agent_server.errors import InvalidInput
+from agent_server.protocol import messages as m
+from agent_server.skeleton.formats import get_format
+
+JOINT_DECIMALS = 4
+"""Joints are rounded to this many decimals of their unit (0.1 mm of metres) before anything
+sees them: a twentieth of a sensor's noise, and it makes the wire, the stages and a recording
+agree to the bit."""
+
+MAX_COORDINATE_M = 50.0
+"""No joint is farther from its sensor."""
+
+
+def skeleton_from_message(message: m.Skeleton | m.PackedSkeleton) -> SkeletonFrame:
+    """Check a skeleton message and turn it into a frame.
+
+    Raises:
+        InvalidInput: If the format is unknown, the number of joints does not fit it, or a
+            number is not finite or out of range.
+    """
+    wanted, limit = _expectation(message.format)
+    joints = message.joints
+    if isinstance(joints, bytes):
+        if len(joints) != 16 * wanted:
+            raise _wrong_count(message.format, wanted, len(joints) / 16)
+        values = np.frombuffer(joints, dtype="<f4").astype(np.float64)
+    else:
+        if len(joints) != wanted:
+            raise _wrong_count(message.format, wanted, len(joints))
+        values = np.fromiter(chain.from_iterable(joints), np.float64, 4 * wanted)
+    table = values.round(JOINT_DECIMALS).reshape(wanted, 4)
+    # Comparisons with NaN are false, so `not <=` refuses it along with what is too large.
+    if not np.abs(table, out=values.reshape(wanted, 4)).max() <= limit or not (
+        table[:, 3].min() >= 0.0 and table[:, 3].max() <= 1.0
+    ):
+        _refuse(table, limit)
+    return SkeletonFrame(
+        originating_ns=message.originating_ns,
+        body_id=message.body_id,
+        format=message.format,
+        joints=_read_only(table.astype(np.float32)),
+    )
+
+
+def skeleton_to_message(frame: SkeletonFrame) -> m.Skeleton:
+    """A frame as a JSON-coded message."""
+    joints = frame.joints.astype(np.float64).round(JOINT_DECIMALS)
+    return m.Skeleton(
+        originating_ns=frame.originating_ns,
+        body_id=frame.body_id,
+        format=frame.format,
+        joints=list(map(tuple, joints.tolist())),
+    )
+
+
+def pack_skeleton(message: m.Skeleton) -> m.PackedSkeleton:
+    """A JSON-coded skeleton as a MessagePack-coded one."""
+    flat = tuple(chain.from_iterable(message.joints))
+    return m.PackedSkeleton(
+        originating_ns=message.originating_ns,
+        body_id=message.body_id,
+        format=message.format,
+        joints=struct.pack(f"<{len(flat)}f", *flat),
+    )
+
+
+def affect_from_message(message: m.Affect) -> AffectSample:
+    """An affect message as a sample. Its ranges were checked when it was decoded."""
+    return AffectSample(message.originating_ns, message.valence, message.arousal)
+
+
+def affect_to_message(sample: AffectSample) -> m.Affect:
+    """A sample as a message."""
+    return m.Affect(sample.originating_ns, sample.valence, sample.arousal)
+
+
+def ack_from_message(message: m.AckMessage, stamp_ns: int) -> Ack:
+    """A renderer's word, stamped with its arrival on the session's time line."""
+    return Ack(
+        stamp_ns, message.command_id, AckStatus(message.status), message.step, message.reason
+    )
+
+
+def pose_message(frame: CoreFrame) -> m.PoseMessage:
+    """The observed core joints for a monitor."""
+    rows = np.column_stack((frame.positions, frame.confidence)).astype(np.float64)
+    joints = rows.round(JOINT_DECIMALS).tolist()
+    return m.PoseMessage(frame.stamp_ns, frame.body_id, list(map(tuple, joints)))
+
+
+def forecast_message(window: int, end_ns: int, forecast: Forecast) -> m.ForecastMessage:
+    """The expected motion for a monitor, rounded to a millimetre."""
+    positions = forecast.positions.astype(np.float64).round(3).tolist()
+    return m.ForecastMessage(window, end_ns, forecast.source, positions)
+
+
+def scene_message(snapshot: SceneSnapshot) -> m.SceneState:
+    """The room for a client."""
+    return m.SceneState(snapshot.mode.value, dict(snapshot.objects), snapshot.command_id)
+
+
+def command_body(command: Command) -> m.CommandBody:
+    """A command as a decision log holds it."""
+    return m.CommandBody(
+        id=command.id,
+        sequence=command.sequence,
+        reaction=command.reaction,
+        cause=command.cause,
+        steps=_steps(command),
+        priority=command.priority,
+        preempts=command.preempts,
+        originating_ns=command.originating_ns,
+        issued_ns=command.issued_ns,
+        ttl_ms=command.ttl_ms,
+    )
+
+
+def command_message(command: Command, epoch: str) -> m.CommandMessage:
+    """A command as a renderer gets it."""
+    return m.CommandMessage(
+        id=command.id,
+        sequence=command.sequence,
+        epoch=epoch,
+        reaction=command.reaction,
+        cause=command.cause,
+        steps=_steps(command),
+        priority=command.priority,
+        originating_ns=command.originating_ns,
+        issued_ns=command.issued_ns,
+        ttl_ms=command.ttl_ms,
+        preempts=command.preempts,
+    )
+
+
+def decision_body(decision: Decision) -> m.DecisionBody:
+    """A decision as a log holds it."""
+    quality, gate, scene = decision.quality, decision.gate, decision.scene
+    return m.DecisionBody(
+        id=decision.id,
+        index=decision.index,
+        window=decision.window,
+        start_ns=decision.start_ns,
+        end_ns=decision.end_ns,
+        body_id=decision.body_id,
+        models=dict(decision.models),
+        quality=m.QualityBody(
+            quality.measured, quality.filled, quality.bone_deviation, list(quality.warnings)
+        ),
+        forecast=decision.forecast,
+        forecast_failure=decision.forecast_failure,
+        probabilities=dict(decision.probabilities),
+        gesture=decision.gesture,
+        gate=m.GateBody(
+            gate.mode, gate.is_open, gate.reason, gate.valence, gate.arousal, gate.age_ms
+        ),
+        scene=scene
+        and m.SceneBody(scene.mode, scene.rule, scene.precondition, scene.met, scene.reason),
+        outcome=decision.outcome.value,
+        reason=decision.reason,
+        command=decision.command and command_body(decision.command),
+    )
+
+
+def _steps(command: Command) -> list[m.StepMessage]:
+    return [m.StepMessage(s.action, s.duration_s, s.target) for s in command.steps]
+
+
+@lru_cache(maxsize=64)
+def _expectation(name: str) -> tuple[int, float]:
+    table = get_format(name)
+    return len(table.names), MAX_COORDINATE_M / table.unit_m
+
+
+def _wrong_count(name: str, wanted: int, got: float) -> InvalidInput:
+    return InvalidInput(
+        f"format {name} has {wanted} joints, got {got:g}: send every joint of the table, with "
+        "confidence 0 where it is not tracked",
+        field="joints",
+        code="wrong_joint_count",
+    )
+
+
+def _refuse(table: np.ndarray, limit: float) -> None:
+    for (joint, axis), value in np.ndenumerate(table):
+        field = f"joints[{joint}][{axis}]"
+        if not np.isfinite(value):
+            raise InvalidInput(
+                f"{field} is {value}: send finite numbers, with confidence 0 for a joint that is "
+                "not tracked",
+                field=field,
+                code="not_finite",
+            )
+        if axis == 3 and not 0.0 <= value <= 1.0:
+            raise InvalidInput(
+                f"{field} is {value:g}: a confidence lies in 0..1", field=field, code="out_of_range"
+            )
+        if abs(value) > limit:
+            raise InvalidInput(
+                f"{field} is {value:g}, beyond {limit:g}: is the unit the one of the format?",
+                field=field,
+                code="out_of_range",
+            )
+
+
+def _read_only(array: Float32) -> Float32:
+    array.flags.writeable = False
+    return array
