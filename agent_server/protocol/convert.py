@@ -26,8 +26,14 @@ MAX_COORDINATE_M = 50.0
 """No joint is farther from its sensor."""
 
 
-def skeleton_from_message(message: m.Skeleton | m.PackedSkeleton) -> SkeletonFrame:
+def skeleton_from_message(
+    message: m.Skeleton | m.PackedSkeleton, stamp_ns: int | None = None
+) -> SkeletonFrame:
     """Check a skeleton message and turn it into a frame.
+
+    Args:
+        message: As decoded.
+        stamp_ns: Its stamp on the session's time line; None keeps the sender's.
 
     Raises:
         InvalidInput: If the format is unknown, the number of joints does not fit it, or a
@@ -50,7 +56,7 @@ def skeleton_from_message(message: m.Skeleton | m.PackedSkeleton) -> SkeletonFra
     ):
         _refuse(table, limit)
     return SkeletonFrame(
-        originating_ns=message.originating_ns,
+        originating_ns=message.originating_ns if stamp_ns is None else stamp_ns,
         body_id=message.body_id,
         format=message.format,
         joints=_read_only(table.astype(np.float32)),
@@ -79,9 +85,10 @@ def pack_skeleton(message: m.Skeleton) -> m.PackedSkeleton:
     )
 
 
-def affect_from_message(message: m.Affect) -> AffectSample:
+def affect_from_message(message: m.Affect, stamp_ns: int | None = None) -> AffectSample:
     """An affect message as a sample. Its ranges were checked when it was decoded."""
-    return AffectSample(message.originating_ns, message.valence, message.arousal)
+    stamp_ns = message.originating_ns if stamp_ns is None else stamp_ns
+    return AffectSample(stamp_ns, message.valence, message.arousal)
 
 
 def affect_to_message(sample: AffectSample) -> m.Affect:

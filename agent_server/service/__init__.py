@@ -1,0 +1,1 @@
+"""Sessions at run time: the only layer, with transports and cli, that awaits."""

@@ -1,0 +1,1 @@
+"""The way from frames to a decision: synchronous steps without a clock of their own."""

@@ -1,0 +1,205 @@
+"""The heart of a session, pure in (value, stamp): no clock, no waiting, no chance.
+
+It has two halves. :meth:`Core.observe` and :meth:`Core.feel` take what sensors send and give
+jobs, in the order in which they must be dealt with. The other methods deal with jobs and with
+what the renderer says, and give commands. A live session runs models between the halves; a
+replay does the same without waiting, and so comes to the same decisions.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from agent_server.config import Settings
+from agent_server.domain.affect import AffectSample
+from agent_server.domain.command import Ack, Command
+from agent_server.domain.decision import Decision, GateVerdict, Outcome, SceneVerdict
+from agent_server.domain.gesture import Classification
+from agent_server.domain.motion import BodyLost, Forecast, Window
+from agent_server.domain.scene import ObjectChanged, SceneSnapshot
+from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.scene.room import Reply, Room
+from agent_server.scene.rules import Rules
+from agent_server.stages.decide import GestureTracker, Phase, Tracking
+from agent_server.stages.gate import AffectGate
+from agent_server.stages.perceive import Perception
+
+_QUIET = {
+    Phase.IDLE: (Outcome.IDLE, "nothing is going on"),
+    Phase.UNSURE: (Outcome.UNSURE, "it is not clear enough yet"),
+    Phase.COOLING_DOWN: (Outcome.COOLING_DOWN, "the same gesture ended a moment ago"),
+    Phase.HANDLED: (Outcome.HANDLED, "it was answered already"),
+}
+_ANSWERED = {
+    Reply.ACT: Outcome.COMMAND,
+    Reply.BUSY: Outcome.BUSY,
+    Reply.NOTHING_TO_DO: Outcome.NOTHING_TO_DO,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class PendingWindow:
+    """A window that waits for the models, with the gate as it stood when it was made."""
+
+    window: Window
+    gate: GateVerdict
+
+
+Job = PendingWindow | BodyLost
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a job came to.
+
+    Attributes:
+        decision: The decision, or None when the body was lost.
+        commands: Commands for the renderer, in order.
+    """
+
+    decision: Decision | None
+    commands: tuple[Command, ...]
+
+
+class Core:
+    """One session's stages and room.
+
+    Args:
+        session: Id of the session; ids of decisions and commands begin with it.
+        settings: Thresholds and times.
+        rules: The room's rules.
+        models: Name and hash of the models in use, for the decisions.
+    """
+
+    def __init__(
+        self, session: str, settings: Settings, rules: Rules, models: Mapping[str, str]
+    ) -> None:
+        self._session = session
+        self._models = dict(models)
+        self._rules = rules
+        self._gate = AffectGate(settings.gate)
+        self.perception = Perception(settings.window, settings.subject)
+        self._tracker = GestureTracker(
+            settings.decide, 1 if settings.window.mode == "thesis" else None
+        )
+        self._room = Room(rules, session)
+        self._next_decision = 0
+
+    # ------------------------------------------------------------------ what sensors send
+
+    def set_face(self, has_face: bool) -> None:
+        """Say whether any sensor can see the person's face."""
+        self._gate.set_face(has_face)
+
+    def observe(self, frame: SkeletonFrame) -> list[Job]:
+        """Take a skeleton frame.
+
+        Raises:
+            InvalidInput: If it is out of order.
+        """
+        return [
+            found if isinstance(found, BodyLost) else self._pending(found)
+            for found in self.perception.push(frame)
+        ]
+
+    def feel(self, sample: AffectSample) -> None:
+        """Take an affect sample."""
+        self._gate.push(sample)
+
+    def notice_absence(self, now_ns: int) -> list[Job]:
+        """Let time pass without frames."""
+        lost = self.perception.advance(now_ns)
+        return [] if lost is None else [lost]
+
+    # ------------------------------------------------------------------ what comes of it
+
+    def decide(
+        self, pending: PendingWindow, forecast: Forecast, classification: Classification
+    ) -> Result:
+        """Come to a decision on a window that the models have seen."""
+        window = pending.window
+        commands = self._room.advance(window.end_ns)
+        tracking = self._tracker.push(classification, window.end_ns)
+        outcome, reason, scene, command = self._answer(tracking, pending)
+        if command is not None:
+            commands.append(command)
+        index, self._next_decision = self._next_decision, self._next_decision + 1
+        decision = Decision(
+            id=f"{self._session}/{index}",
+            index=index,
+            window=window.index,
+            start_ns=window.start_ns,
+            end_ns=window.end_ns,
+            body_id=window.body_id,
+            models=self._models,
+            quality=window.quality,
+            forecast=forecast.source,
+            forecast_failure=forecast.failure,
+            probabilities={
+                label: round(float(p), 4)
+                for label, p in zip(
+                    classification.labels, classification.probabilities, strict=True
+                )
+            },
+            gesture=tracking.gesture,
+            gate=pending.gate,
+            scene=scene,
+            outcome=outcome,
+            reason=reason,
+            command=command,
+        )
+        return Result(decision, tuple(commands))
+
+    def lose_body(self, lost: BodyLost) -> Result:
+        """The person has left."""
+        self._tracker.reset(lost.stamp_ns)
+        return Result(None, tuple(self._room.body_lost(lost)))
+
+    def advance(self, now_ns: int) -> tuple[Command, ...]:
+        """Let the room's time pass."""
+        return tuple(self._room.advance(now_ns))
+
+    def acknowledge(self, ack: Ack) -> tuple[Command, ...]:
+        """Take the renderer's word on a command."""
+        return tuple(self._room.acknowledge(ack).commands)
+
+    def change_object(self, event: ObjectChanged) -> tuple[Command, ...]:
+        """Somebody changed an object by hand.
+
+        Raises:
+            InvalidInput: If the room has no such object or state.
+        """
+        return tuple(self._room.change_object(event))
+
+    def set_renderer(self, attached: bool, stamp_ns: int) -> tuple[Command, ...]:
+        """Say whether somebody carries out the commands."""
+        return tuple(self._room.set_renderer(attached, stamp_ns))
+
+    def scene(self) -> SceneSnapshot:
+        """The room as it is."""
+        return self._room.snapshot()
+
+    # ------------------------------------------------------------------ within
+
+    def _pending(self, window: Window) -> PendingWindow:
+        return PendingWindow(window, self._gate.verdict(window.end_ns))
+
+    def _answer(
+        self, tracking: Tracking, pending: PendingWindow
+    ) -> tuple[Outcome, str, SceneVerdict | None, Command | None]:
+        gesture = tracking.gesture
+        if tracking.phase is not Phase.ACTIVE:
+            outcome, reason = _QUIET[tracking.phase]
+            subject = "" if tracking.phase is Phase.IDLE else f"{gesture}: "
+            return outcome, subject + reason, None, None
+        if self._rules.is_gated(gesture) and not pending.gate.is_open:
+            return Outcome.GATED, f"{gesture}: {pending.gate.reason}", None, None
+        window = pending.window
+        answer = self._room.consider(gesture, window.end_ns, window.end_ns)
+        if answer.command is not None:
+            self._tracker.mark_handled()
+        return (
+            _ANSWERED[answer.reply],
+            f"{gesture}: {answer.verdict.reason}",
+            answer.verdict,
+            answer.command,
+        )

@@ -1,0 +1,66 @@
+"""What waits for a client, each edge with its own promise.
+
+Telemetry may be lost: only the latest of each topic waits. Commands may not: they wait in
+order, and a client that lets too many pile up is disconnected.
+"""
+
+import asyncio
+from collections import deque
+
+from agent_server.protocol.messages import Message
+
+
+class Overflow(Exception):  # noqa: N818 - it is a signal to the shell, not an error of the program
+    """Too many commands wait for a slow client."""
+
+
+class Outbox:
+    """Everything that waits for one connection.
+
+    Args:
+        max_commands: Messages that may wait in order before :class:`Overflow` is raised.
+    """
+
+    def __init__(self, max_commands: int) -> None:
+        self._ordered: deque[Message] = deque()
+        self._latest: dict[str, Message] = {}
+        self._max_commands = max_commands
+        self._ready = asyncio.Event()
+        self.missed = 0
+        self.close_code: int | None = None
+        self.close_reason = ""
+
+    def post(self, message: Message) -> None:
+        """Queue a message that must arrive, in order.
+
+        Raises:
+            Overflow: If too many wait already.
+        """
+        if len(self._ordered) >= self._max_commands:
+            raise Overflow
+        self._ordered.append(message)
+        self._ready.set()
+
+    def update(self, topic: str, message: Message) -> None:
+        """Replace what waits on a telemetry topic."""
+        if self._latest.pop(topic, None) is not None:
+            self.missed += 1
+        self._latest[topic] = message
+        self._ready.set()
+
+    def close(self, code: int, reason: str) -> None:
+        """Ask the writer to close the connection after what waits in order was sent."""
+        if self.close_code is None:
+            self.close_code, self.close_reason = code, reason
+        self._ready.set()
+
+    async def take(self) -> list[Message]:
+        """Wait for something to send; an empty list means that it is time to close."""
+        await self._ready.wait()
+        self._ready.clear()
+        messages = [*self._ordered, *self._latest.values()]
+        self._ordered.clear()
+        self._latest.clear()
+        if self.close_code is not None and messages:
+            self._ready.set()
+        return messages

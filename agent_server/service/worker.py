@@ -1,0 +1,120 @@
+"""Models off the event loop, shared by all sessions.
+
+Windows that wait when the thread is free are run together. Whether a batch may be run as one
+is the bundle's to say (``batch_exact``), so that a decision never depends on who else is there.
+"""
+
+import asyncio
+import time
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+from agent_server.domain.gesture import Classification
+from agent_server.domain.model import Classifier, Predictor
+from agent_server.domain.motion import Forecast, Window
+from agent_server.errors import InferenceError
+from agent_server.stages.classify import classify
+from agent_server.stages.predict import predict
+
+MAX_BATCH = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Models:
+    """The models in use."""
+
+    predictor: Predictor
+    classifier: Classifier
+
+    @property
+    def hashes(self) -> dict[str, str]:
+        """Bundle name -> first 12 hexadecimal digits of the model's hash."""
+        return {model.name: model.sha256[:12] for model in (self.predictor, self.classifier)}
+
+
+@dataclass(frozen=True, slots=True)
+class Inference:
+    """What the models made of a window, and how long that took.
+
+    Attributes:
+        forecast: The expected motion.
+        classification: Class probabilities.
+        predict_ms: Time of the predictor's batch, in milliseconds.
+        classify_ms: Time of the classifier's batch, in milliseconds.
+    """
+
+    forecast: Forecast
+    classification: Classification
+    predict_ms: float
+    classify_ms: float
+
+
+def infer(models: Models, windows: Sequence[Window]) -> list[Inference]:
+    """Run both models on a batch of windows.
+
+    Raises:
+        InferenceError: If the classifier fails.
+    """
+    start = time.perf_counter_ns()
+    forecasts = predict(models.predictor, windows)
+    between = time.perf_counter_ns()
+    classifications = classify(models.classifier, windows, forecasts)
+    predict_ms = (between - start) / 1e6
+    classify_ms = (time.perf_counter_ns() - between) / 1e6
+    return [
+        Inference(forecast, classification, predict_ms, classify_ms)
+        for forecast, classification in zip(forecasts, classifications, strict=True)
+    ]
+
+
+class InferenceWorker:
+    """One thread that runs the models for everybody.
+
+    Args:
+        models: The models.
+    """
+
+    def __init__(self, models: Models) -> None:
+        self.models = models
+        self._waiting: list[tuple[Window, asyncio.Future[Inference]]] = []
+        self._wake = asyncio.Event()
+        self.largest_batch = 0
+
+    async def infer(self, window: Window) -> Inference:
+        """Run the models on a window when the thread is free.
+
+        Raises:
+            InferenceError: If the classifier fails.
+        """
+        future = asyncio.get_running_loop().create_future()
+        self._waiting.append((window, future))
+        self._wake.set()
+        result: Inference = await future
+        return result
+
+    async def run(self) -> None:
+        """Serve requests until cancelled."""
+        loop = asyncio.get_running_loop()
+        with ThreadPoolExecutor(1, thread_name_prefix="inference") as thread:
+            while True:
+                await self._wake.wait()
+                batch, self._waiting = self._waiting[:MAX_BATCH], self._waiting[MAX_BATCH:]
+                if not self._waiting:
+                    self._wake.clear()
+                # A session that has gone no longer waits for its window.
+                batch = [(window, future) for window, future in batch if not future.done()]
+                if not batch:
+                    continue
+                self.largest_batch = max(self.largest_batch, len(batch))
+                windows = [window for window, _ in batch]
+                try:
+                    results = await loop.run_in_executor(thread, infer, self.models, windows)
+                except InferenceError as error:
+                    for _, future in batch:
+                        if not future.done():
+                            future.set_exception(InferenceError(str(error)))
+                    continue
+                for (_, future), result in zip(batch, results, strict=True):
+                    if not future.done():
+                        future.set_result(result)
