@@ -1,0 +1,45 @@
+# Everything a developer types. Each target does the set-up that it needs.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.ready
+
+.PHONY: setup demo test lint bench recordings page clean
+
+setup: $(STAMP)
+
+$(STAMP): pyproject.toml hatch_build.py
+	$(PYTHON) -c 'import sys; sys.exit("Python 3.11 or newer is needed, this is %d.%d: make PYTHON=python3.11" % sys.version_info[:2] if sys.version_info < (3, 11) else 0)'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	touch $@
+
+page: $(STAMP)
+	$(BIN)/python hatch_build.py
+
+demo: $(STAMP)
+	$(BIN)/agent-server demo
+
+test: $(STAMP)
+	$(BIN)/python -m coverage erase
+	$(BIN)/python -m coverage run -m pytest
+	$(BIN)/python -m coverage combine --quiet
+	$(BIN)/python -m coverage report --fail-under=90
+
+lint: $(STAMP)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(STAMP)
+	$(BIN)/agent-server bench ingest --json
+	$(BIN)/agent-server bench decision --json
+	$(BIN)/agent-server bench load --sessions 10 --json
+
+recordings: $(STAMP)
+	$(BIN)/python recorded_streams/make.py
+
+clean:
+	rm -rf $(VENV) dist build runs .coverage* agent_server/web/dist agent_server/web/node_modules
