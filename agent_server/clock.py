@@ -21,9 +21,11 @@ class SystemClock:
     """The machine's monotonic clock."""
 
     def now_ns(self) -> int:
+        """Nanoseconds since some moment in the past."""
         return time.monotonic_ns()
 
     def wall(self) -> str:
+        """Now, in UTC."""
         return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
@@ -38,9 +40,11 @@ class ManualClock:
         self._now_ns = now_ns
 
     def now_ns(self) -> int:
+        """Where it stands."""
         return self._now_ns
 
     def wall(self) -> str:
+        """Where it stands, counted from 1970."""
         return datetime.fromtimestamp(self._now_ns / 1e9, UTC).isoformat(timespec="milliseconds")
 
     def advance(self, by_ns: int) -> None:

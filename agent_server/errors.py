@@ -43,15 +43,3 @@ class InferenceError(AgentServerError):
 class RecordingError(AgentServerError):
     """A recording cannot be read or written; the text names the file."""
 
-
-class ProtocolViolation(AgentServerError):
-    """A peer broke the protocol for good; the connection must be closed.
-
-    Args:
-        message: A sentence for the peer.
-        close_code: Websocket close code, 4400 to 4499.
-    """
-
-    def __init__(self, message: str, *, close_code: int) -> None:
-        super().__init__(message)
-        self.close_code = close_code

@@ -1,0 +1,1 @@
+"""Model bundles: what they promise, and running them."""

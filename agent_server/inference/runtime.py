@@ -90,7 +90,9 @@ class OnnxModel:
         try:
             actual = self.run(given)
         except InferenceError as error:
-            raise BundleError(f"{path}: the model does not run on its golden input: {error}") from error
+            raise BundleError(
+                f"{path}: the model does not run on its golden input: {error}"
+            ) from error
         worst = float(np.abs(actual - expected).max()) if actual.shape == expected.shape else None
         if worst is None or worst > GOLDEN_TOLERANCE:
             raise BundleError(

@@ -57,9 +57,11 @@ class JsonCodec:
         self._server = msgspec.json.Decoder(ServerMessage)
 
     def encode(self, message: Message) -> str:
+        """One message as JSON text."""
         return self._encoder.encode(message).decode()
 
     def decode_client(self, data: Wire) -> Message:
+        """Decode what a client sent."""
         if isinstance(data, bytes):
             raise InvalidInput(
                 f"this connection speaks {SUBPROTOCOL_JSON}, whose messages are text; got "
@@ -69,6 +71,7 @@ class JsonCodec:
         return _decoded(self._client, data)
 
     def decode_server(self, data: Wire) -> Message:
+        """Decode what a server sent."""
         return _decoded(self._server, data)
 
 
@@ -83,9 +86,11 @@ class MsgpackCodec:
         self._server = msgspec.msgpack.Decoder(ServerMessage)
 
     def encode(self, message: Message) -> bytes:
+        """One message as MessagePack."""
         return self._encoder.encode(message)
 
     def decode_client(self, data: Wire) -> Message:
+        """Decode what a client sent."""
         if isinstance(data, str):
             raise InvalidInput(
                 f"this connection speaks {SUBPROTOCOL_MSGPACK}, whose messages are binary; got "
@@ -95,6 +100,7 @@ class MsgpackCodec:
         return _decoded(self._client, data)
 
     def decode_server(self, data: Wire) -> Message:
+        """Decode what a server sent."""
         return _decoded(self._server, data)
 
 

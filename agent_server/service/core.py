@@ -17,8 +17,8 @@ from agent_server.domain.gesture import Classification
 from agent_server.domain.motion import BodyLost, Forecast, Window
 from agent_server.domain.scene import ObjectChanged, SceneSnapshot
 from agent_server.domain.skeleton import SkeletonFrame
-from agent_server.scene.room import Reply, Room
-from agent_server.scene.rules import Rules
+from agent_server.scene.room import Room
+from agent_server.scene.rulebook import Rules
 from agent_server.stages.decide import GestureTracker, Phase, Tracking
 from agent_server.stages.gate import AffectGate
 from agent_server.stages.perceive import Perception
@@ -28,11 +28,6 @@ _QUIET = {
     Phase.UNSURE: (Outcome.UNSURE, "it is not clear enough yet"),
     Phase.COOLING_DOWN: (Outcome.COOLING_DOWN, "the same gesture ended a moment ago"),
     Phase.HANDLED: (Outcome.HANDLED, "it was answered already"),
-}
-_ANSWERED = {
-    Reply.ACT: Outcome.COMMAND,
-    Reply.BUSY: Outcome.BUSY,
-    Reply.NOTHING_TO_DO: Outcome.NOTHING_TO_DO,
 }
 
 
@@ -49,14 +44,14 @@ Job = PendingWindow | BodyLost
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a job came to.
+    """What a window came to.
 
     Attributes:
-        decision: The decision, or None when the body was lost.
+        decision: The decision with its reasons.
         commands: Commands for the renderer, in order.
     """
 
-    decision: Decision | None
+    decision: Decision
     commands: tuple[Command, ...]
 
 
@@ -105,10 +100,14 @@ class Core:
         """Take an affect sample."""
         self._gate.push(sample)
 
-    def notice_absence(self, now_ns: int) -> list[Job]:
-        """Let time pass without frames."""
+    def tick(self, now_ns: int) -> tuple[list[Job], tuple[Command, ...]]:
+        """Let time pass without input.
+
+        Returns:
+            Jobs; and if there are none, what fell due in the room.
+        """
         lost = self.perception.advance(now_ns)
-        return [] if lost is None else [lost]
+        return ([lost], ()) if lost is not None else ([], self._room.advance(now_ns))
 
     # ------------------------------------------------------------------ what comes of it
 
@@ -117,11 +116,9 @@ class Core:
     ) -> Result:
         """Come to a decision on a window that the models have seen."""
         window = pending.window
-        commands = self._room.advance(window.end_ns)
+        due = self._room.advance(window.end_ns)
         tracking = self._tracker.push(classification, window.end_ns)
         outcome, reason, scene, command = self._answer(tracking, pending)
-        if command is not None:
-            commands.append(command)
         index, self._next_decision = self._next_decision, self._next_decision + 1
         decision = Decision(
             id=f"{self._session}/{index}",
@@ -147,20 +144,16 @@ class Core:
             reason=reason,
             command=command,
         )
-        return Result(decision, tuple(commands))
+        return Result(decision, due if command is None else (*due, command))
 
-    def lose_body(self, lost: BodyLost) -> Result:
+    def lose_body(self, lost: BodyLost) -> tuple[Command, ...]:
         """The person has left."""
         self._tracker.reset(lost.stamp_ns)
-        return Result(None, tuple(self._room.body_lost(lost)))
-
-    def advance(self, now_ns: int) -> tuple[Command, ...]:
-        """Let the room's time pass."""
-        return tuple(self._room.advance(now_ns))
+        return self._room.lose_body(lost)
 
     def acknowledge(self, ack: Ack) -> tuple[Command, ...]:
         """Take the renderer's word on a command."""
-        return tuple(self._room.acknowledge(ack).commands)
+        return self._room.acknowledge(ack).commands
 
     def change_object(self, event: ObjectChanged) -> tuple[Command, ...]:
         """Somebody changed an object by hand.
@@ -168,11 +161,13 @@ class Core:
         Raises:
             InvalidInput: If the room has no such object or state.
         """
-        return tuple(self._room.change_object(event))
+        return self._room.change(event)
 
     def set_renderer(self, attached: bool, stamp_ns: int) -> tuple[Command, ...]:
         """Say whether somebody carries out the commands."""
-        return tuple(self._room.set_renderer(attached, stamp_ns))
+        if attached:
+            return self._room.attach_renderer(stamp_ns)
+        return self._room.detach_renderer(stamp_ns)
 
     def scene(self) -> SceneSnapshot:
         """The room as it is."""
@@ -197,9 +192,5 @@ class Core:
         answer = self._room.consider(gesture, window.end_ns, window.end_ns)
         if answer.command is not None:
             self._tracker.mark_handled()
-        return (
-            _ANSWERED[answer.reply],
-            f"{gesture}: {answer.verdict.reason}",
-            answer.verdict,
-            answer.command,
-        )
+        reason = f"{gesture}: {answer.verdict.reason}"
+        return answer.outcome, reason, answer.verdict, answer.command

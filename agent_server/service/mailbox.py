@@ -41,6 +41,11 @@ class Outbox:
         self._ordered.append(message)
         self._ready.set()
 
+    def precede(self, message: Message) -> None:
+        """Queue a message ahead of all others."""
+        self._ordered.appendleft(message)
+        self._ready.set()
+
     def update(self, topic: str, message: Message) -> None:
         """Replace what waits on a telemetry topic."""
         if self._latest.pop(topic, None) is not None:

@@ -4,7 +4,7 @@ import asyncio
 import logging
 from collections import Counter, deque
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from agent_server.clock import Clock
 from agent_server.config import Settings
@@ -15,10 +15,19 @@ from agent_server.domain.stamp import NS_PER_MS, NS_PER_S
 from agent_server.errors import InferenceError, InvalidInput
 from agent_server.protocol import convert
 from agent_server.protocol import messages as m
-from agent_server.protocol.connection import CLOSE_REPLACED, CLOSE_TOO_SLOW
-from agent_server.scene.rules import Rules
+from agent_server.protocol.connection import CLOSE_REPLACED
+from agent_server.recording.records import (
+    BodyGone,
+    RendererChanged,
+    SensorChanged,
+    Tick,
+    WindowDone,
+    WindowSkipped,
+)
+from agent_server.scene.rulebook import Rules
+from agent_server.service.audience import Audience, Client
 from agent_server.service.core import Core, Job, PendingWindow
-from agent_server.service.mailbox import Outbox, Overflow
+from agent_server.service.journal import Journal
 from agent_server.service.timeline import Timeline
 from agent_server.service.worker import Inference, InferenceWorker
 
@@ -29,24 +38,7 @@ QUIET_NS = NS_PER_S
 """Ticks let time pass only after this long without input; while input comes, it is the clock."""
 
 
-@dataclass(eq=False, slots=True)
-class Client:
-    """One connection of a session.
-
-    Attributes:
-        role: What it came as.
-        hello: What it said of itself.
-        outbox: What waits for it.
-        streams: Kinds of stream that it sends: ``body``, ``face``.
-    """
-
-    role: m.Role
-    hello: m.Hello
-    outbox: Outbox
-    streams: set[str] = field(default_factory=set)
-
-
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class _Waiting:
     job: Job
     arrival_ns: int
@@ -62,6 +54,7 @@ class Session:
         worker: The models.
         clock: Where to read the time.
         epoch: Changes with every start of the server.
+        journal: Where the session is recorded.
     """
 
     def __init__(
@@ -72,14 +65,16 @@ class Session:
         worker: InferenceWorker,
         clock: Clock,
         epoch: str,
+        journal: Journal,
     ) -> None:
         self.id = session
-        self.clients: list[Client] = []
+        self.audience = Audience()
         self.counters: Counter[str] = Counter()
         self.sequence = 0
         self._epoch = epoch
         self._worker = worker
         self._clock = clock
+        self._journal = journal
         self._core = Core(session, settings, rules, worker.models.hashes)
         self._timeline = Timeline()
         self._owners: dict[str, Client] = {}
@@ -98,31 +93,26 @@ class Session:
         """
         if client.role == "renderer" and not client.hello.mirror:
             self._seat_renderer(client)
-        self.clients.append(client)
+        self.audience.clients.append(client)
         if client.role == "sensor":
-            self._update_face()
+            self._update_face(client, is_open=True)
 
     def leave(self, client: Client) -> None:
         """Remove a client."""
-        self.clients.remove(client)
+        self.audience.clients.remove(client)
         self._timeline.forget(id(client))
         for kind in client.streams:
             if self._owners.get(kind) is client:
                 del self._owners[kind]
         if client.role == "sensor":
-            self._update_face()
+            self._update_face(client, is_open=False)
         if self._renderer is client:
             self._renderer = None
-            self._deliver(self._core.set_renderer(False, self._now()))
+            self._set_renderer(False)
 
     def scene(self) -> m.SceneState:
         """The room as it is."""
         return convert.scene_message(self._core.scene())
-
-    @property
-    def has_sensor(self) -> bool:
-        """Whether a sensor is connected."""
-        return any(client.role == "sensor" for client in self.clients)
 
     # ------------------------------------------------------------------ input
 
@@ -130,45 +120,65 @@ class Session:
         """Take a message of a client.
 
         Raises:
-            InvalidInput: If it is refused; nothing has changed then.
+            InvalidInput: If it is refused; no stage has seen it then.
         """
         arrival_ns = self._clock.now_ns()
         match message:
             case m.Skeleton() | m.PackedSkeleton():
-                self._own("body", client)
-                frame = convert.skeleton_from_message(
-                    message, self._timeline.map(id(client), message.originating_ns, arrival_ns)
-                )
-                self.counters["frames"] += 1
-                self._enqueue(self._core.observe(frame), arrival_ns)
-                self._show_pose()
+                self._take_skeleton(client, message, arrival_ns)
             case m.Affect():
-                self._own("face", client)
-                sample = convert.affect_from_message(
-                    message, self._timeline.map(id(client), message.originating_ns, arrival_ns)
-                )
-                self.counters["affect_samples"] += 1
-                self._core.feel(sample)
-                self._show(
-                    "affect",
-                    m.AffectTelemetry(sample.originating_ns, sample.valence, sample.arousal),
-                )
+                self._take_affect(client, message, arrival_ns)
             case m.AckMessage():
-                self._require_acting(client)
-                ack = convert.ack_from_message(message, self._now())
-                self.counters["acks"] += 1
-                self._deliver(self._core.acknowledge(ack))
-                self._show(
-                    "ack",
-                    m.AckTelemetry(
-                        message.command_id, message.status, message.step, message.reason
-                    ),
-                )
+                self._take_ack(client, message)
             case m.SceneEvent():
-                self._require_acting(client)
-                event = ObjectChanged(self._now(), message.object, message.state)
-                self._deliver(self._core.change_object(event))
-                self._show_scene()
+                self._take_scene_event(client, message)
+
+    def _take_skeleton(
+        self, client: Client, message: m.Skeleton | m.PackedSkeleton, arrival_ns: int
+    ) -> None:
+        self._own("body", client)
+        stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
+        frame = convert.skeleton_from_message(message, stamp_ns)
+        jobs = self._core.observe(frame)
+        self.counters["frames"] += 1
+        self._journal.skeleton(frame)
+        self._enqueue(jobs, arrival_ns)
+        latest = self._core.perception.latest
+        if latest is not None and self.audience.is_watched:
+            self.audience.show("pose", convert.pose_message(latest))
+
+    def _take_affect(self, client: Client, message: m.Affect, arrival_ns: int) -> None:
+        self._own("face", client)
+        stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
+        sample = convert.affect_from_message(message, stamp_ns)
+        self._core.feel(sample)
+        self.counters["affect_samples"] += 1
+        self._journal.affect(sample)
+        self.audience.show(
+            "affect", m.AffectTelemetry(sample.originating_ns, sample.valence, sample.arousal)
+        )
+
+    def _take_ack(self, client: Client, message: m.AckMessage) -> None:
+        self._require_acting(client)
+        now_ns = self._now()
+        commands = self._core.acknowledge(convert.ack_from_message(message, now_ns))
+        self.counters["acks"] += 1
+        self._journal.message(now_ns, message)
+        self._deliver(commands)
+        self.audience.show(
+            "ack",
+            m.AckTelemetry(message.command_id, message.status, message.step, message.reason),
+        )
+        self.audience.show_scene(self.scene())
+
+    def _take_scene_event(self, client: Client, message: m.SceneEvent) -> None:
+        self._require_acting(client)
+        now_ns = self._now()
+        commands = self._core.change_object(ObjectChanged(now_ns, message.object, message.state))
+        self.counters["scene_events"] += 1
+        self._journal.message(now_ns, message)
+        self._deliver(commands)
+        self.audience.show_scene(self.scene())
 
     # ------------------------------------------------------------------ work
 
@@ -185,52 +195,61 @@ class Session:
             while self._jobs:
                 waiting = self._jobs.popleft()
                 if isinstance(waiting.job, BodyLost):
-                    self.counters["bodies_lost"] += 1
-                    self._deliver(self._core.lose_body(waiting.job).commands)
+                    self._lose_body(waiting.job)
                 else:
                     await self._decide(waiting.job, waiting.arrival_ns)
 
+    def _lose_body(self, lost: BodyLost) -> None:
+        self.counters["bodies_lost"] += 1
+        self._journal.entry(BodyGone(lost.stamp_ns, lost.body_id))
+        self._deliver(self._core.lose_body(lost))
+
     async def _decide(self, pending: PendingWindow, arrival_ns: int) -> None:
+        window = pending.window
         started_ns = self._clock.now_ns()
         self._is_inferring = True
         try:
-            inference = await self._worker.infer(pending.window)
+            inference = await self._worker.infer(window)
         except InferenceError as error:
             self.counters["classifier_failures"] += 1
-            log.error("session %s: no decision on a window: %s", self.id, error)
-            self._show("error", m.ErrorMessage("classifier_failed", str(error)))
+            self._journal.entry(WindowSkipped(window.end_ns, window.index))
+            log.error("session %s: no decision on window %d: %s", self.id, window.index, error)
+            self.audience.show("error", m.ErrorMessage("classifier_failed", str(error)))
             return
         finally:
             self._is_inferring = False
-        if inference.forecast.failure is not None:
-            self.counters["predictor_failures"] += 1
         begin_ns = self._clock.now_ns()
         result = self._core.decide(pending, inference.forecast, inference.classification)
         end_ns = self._clock.now_ns()
-        self.counters["decisions"] += 1
-        # The command leaves first; what monitors see can wait.
+        # The command leaves first; what monitors and the recording get can wait.
         self._deliver(result.commands)
-        if result.decision is not None:
-            timing = self._timing(inference, arrival_ns, started_ns, begin_ns, end_ns)
-            body = convert.decision_body(result.decision)
-            self._show("decision", m.DecisionMessage(body, timing))
-        window = pending.window
-        self._show(
-            "forecast", convert.forecast_message(window.index, window.end_ns, inference.forecast)
+        self.counters["decisions"] += 1
+        failure = inference.forecast.failure
+        self.counters["predictor_failures"] += failure is not None
+        self._journal.entry(WindowDone(window.end_ns, window.index, failure))
+        decided = m.DecisionMessage(
+            convert.decision_body(result.decision),
+            self._timing(inference, arrival_ns, started_ns, begin_ns, end_ns),
         )
-        self._show("stats", self._stats())
+        self._journal.message(window.end_ns, decided)
+        self.audience.show("decision", decided)
+        if self.audience.is_watched:
+            forecast = convert.forecast_message(window.index, window.end_ns, inference.forecast)
+            self.audience.show("forecast", forecast)
+            self.audience.show("stats", self._stats())
 
     async def _tick(self) -> None:
         while True:
             await asyncio.sleep(TICK_S)
             arrival_ns = self._clock.now_ns()
-            busy = self._jobs or self._is_inferring
-            if busy or self._timeline.idle_ns(arrival_ns) < QUIET_NS:
+            is_busy = self._jobs or self._is_inferring
+            if is_busy or self._timeline.idle_ns(arrival_ns) < QUIET_NS:
                 continue
             now_ns = self._timeline.now(arrival_ns)
-            self._enqueue(self._core.notice_absence(now_ns), arrival_ns)
-            if not self._jobs:
-                self._deliver(self._core.advance(now_ns))
+            self._journal.entry(Tick(now_ns))
+            jobs, commands = self._core.tick(now_ns)
+            self._enqueue(jobs, arrival_ns)
+            self._deliver(commands)
 
     def _enqueue(self, jobs: Iterable[Job], arrival_ns: int) -> None:
         for job in jobs:
@@ -242,47 +261,24 @@ class Session:
 
     def _skip_waiting_window(self) -> None:
         """Of the windows that wait only the latest is worth the models' time."""
-        if self._jobs and isinstance(self._jobs[-1].job, PendingWindow):
+        if self._jobs and isinstance(skipped := self._jobs[-1].job, PendingWindow):
             self._jobs.pop()
             self.counters["skipped_windows"] += 1
+            self._journal.entry(WindowSkipped(skipped.window.end_ns, skipped.window.index))
 
     # ------------------------------------------------------------------ output
 
     def _deliver(self, commands: Iterable[Command]) -> None:
-        changed = False
+        sent = False
         for command in commands:
-            changed = True
+            sent = True
             self.sequence = command.sequence
             self.counters["commands"] += 1
             message = convert.command_message(command, self._epoch)
-            for client in self._renderers():
-                try:
-                    client.outbox.post(message)
-                except Overflow:
-                    client.outbox.close(CLOSE_TOO_SLOW, "too many commands wait; read faster")
-            self._show("command", message)
-        if changed:
-            self._show_scene()
-
-    def _show(self, topic: str, message: m.Message) -> None:
-        for client in self._monitors():
-            client.outbox.update(topic, message)
-
-    def _show_scene(self) -> None:
-        scene = self.scene()
-        for client in (*self._monitors(), *self._renderers()):
-            client.outbox.update("scene", scene)
-
-    def _show_pose(self) -> None:
-        frame = self._core.perception.latest
-        if frame is not None and any(True for _ in self._monitors()):
-            self._show("pose", convert.pose_message(frame))
-
-    def _monitors(self) -> Iterable[Client]:
-        return (client for client in self.clients if client.role == "monitor")
-
-    def _renderers(self) -> Iterable[Client]:
-        return (client for client in self.clients if client.role == "renderer")
+            self.audience.order(message)
+            self._journal.message(command.issued_ns, message)
+        if sent:
+            self.audience.show_scene(self.scene())
 
     def _stats(self) -> m.StatsMessage:
         c = self.counters
@@ -294,7 +290,7 @@ class Session:
             skipped_windows=c["skipped_windows"],
             predictor_failures=c["predictor_failures"],
             rejected_messages=c["rejected_messages"],
-            missed_telemetry=sum(client.outbox.missed for client in self._monitors()),
+            missed_telemetry=self.audience.missed,
             counters={**c, **self._core.perception.counters},
         )
 
@@ -340,7 +336,12 @@ class Session:
                 )
             self._renderer.outbox.close(CLOSE_REPLACED, "another renderer took over")
         self._renderer = client
-        self._deliver(self._core.set_renderer(True, self._now()))
+        self._set_renderer(True)
+
+    def _set_renderer(self, attached: bool) -> None:
+        now_ns = self._now()
+        self._journal.entry(RendererChanged(now_ns, attached))
+        self._deliver(self._core.set_renderer(attached, now_ns))
 
     def _require_acting(self, client: Client) -> None:
         if self._renderer is not client:
@@ -349,7 +350,9 @@ class Session:
                 code="not_acting",
             )
 
-    def _update_face(self) -> None:
-        sensors = [client for client in self.clients if client.role == "sensor"]
+    def _update_face(self, client: Client, *, is_open: bool) -> None:
+        """A face is expected as long as any sensor that is there expects one."""
+        sensors = list(self.audience.having("sensor"))
         if sensors:
-            self._core.set_face(any(client.hello.face == "expected" for client in sensors))
+            self._core.set_face(any(sensor.hello.face == "expected" for sensor in sensors))
+        self._journal.entry(SensorChanged(self._now(), is_open, client.hello.face))

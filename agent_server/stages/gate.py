@@ -1,6 +1,6 @@
 """The affect gate: whether a person looks as if they want something done.
 
-A discomfort gesture passes when valence < -3 and \\|arousal\\| > 3 on the [-10, 10] scale
+A discomfort gesture passes when valence < -3 and the size of arousal > 3 on [-10, 10]
 (Chopin's thesis, chapter 5), with hysteresis, and never when valence > 0.
 """
 
@@ -53,9 +53,7 @@ class AffectGate:
             reason, is_open = "the gate is off", True
         else:
             reason, is_open = self._reason(sample), self._is_open
-        return GateVerdict(
-            mode, is_open, reason, sample.valence, sample.arousal, _rounded(age_ms)
-        )
+        return GateVerdict(mode, is_open, reason, sample.valence, sample.arousal, _rounded(age_ms))
 
     def _next(self, valence: float, strength: float) -> bool:
         s = self._settings

@@ -1,0 +1,1 @@
+"""Where the product meets the network."""

@@ -1,0 +1,66 @@
+"""Who listens to a session, and what each of them gets."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from agent_server.protocol import messages as m
+from agent_server.protocol.connection import CLOSE_TOO_SLOW
+from agent_server.service.mailbox import Outbox, Overflow
+
+
+@dataclass(eq=False, slots=True)
+class Client:
+    """One connection of a session.
+
+    Attributes:
+        role: What it came as.
+        hello: What it said of itself.
+        outbox: What waits for it.
+        streams: Kinds of stream that it sends: ``body``, ``face``.
+    """
+
+    role: m.Role
+    hello: m.Hello
+    outbox: Outbox
+    streams: set[str] = field(default_factory=set)
+
+
+class Audience:
+    """The clients of one session."""
+
+    def __init__(self) -> None:
+        self.clients: list[Client] = []
+
+    def having(self, role: m.Role) -> Iterator[Client]:
+        """The clients that came as ``role``."""
+        return (client for client in self.clients if client.role == role)
+
+    @property
+    def is_watched(self) -> bool:
+        """Whether any monitor is there."""
+        return any(True for _ in self.having("monitor"))
+
+    @property
+    def missed(self) -> int:
+        """Telemetry messages that monitors were too slow for."""
+        return sum(client.outbox.missed for client in self.having("monitor"))
+
+    def show(self, topic: str, message: m.Message) -> None:
+        """Give telemetry to the monitors; only the latest of a topic waits for a slow one."""
+        for client in self.having("monitor"):
+            client.outbox.update(topic, message)
+
+    def show_scene(self, scene: m.SceneState) -> None:
+        """Give the room's state to monitors and renderers."""
+        self.show("scene", scene)
+        for client in self.having("renderer"):
+            client.outbox.update("scene", scene)
+
+    def order(self, command: m.CommandMessage) -> None:
+        """Give a command to the renderers, mirrors included; one that is too slow is closed."""
+        for client in self.having("renderer"):
+            try:
+                client.outbox.post(command)
+            except Overflow:
+                client.outbox.close(CLOSE_TOO_SLOW, "too many commands wait; read faster")
+        self.show("command", command)

@@ -1,0 +1,176 @@
+"""All sessions of a server."""
+
+import asyncio
+import logging
+import secrets
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+
+from agent_server import __version__
+from agent_server.clock import Clock
+from agent_server.config import Settings
+from agent_server.protocol import messages as m
+from agent_server.protocol.connection import CLOSE_GOING_AWAY
+from agent_server.scene.rulebook import Rules
+from agent_server.service.audience import Client
+from agent_server.service.journal import NoJournal
+from agent_server.service.session import Session
+from agent_server.service.worker import InferenceWorker, Models
+
+log = logging.getLogger(__name__)
+
+CLOSE_INTERNAL = 1011
+
+
+class HubFull(Exception):  # noqa: N818 - an answer, not a fault of the program
+    """No further session is admitted."""
+
+
+class Hub:
+    """Opens sessions when their first client comes and closes them some time after the last left.
+
+    Args:
+        settings: All settings.
+        rules: The room's rules, the same for all sessions.
+        models: The models, shared by all sessions.
+        clock: Where to read the time.
+    """
+
+    def __init__(self, settings: Settings, rules: Rules, models: Models, clock: Clock) -> None:
+        self.settings = settings
+        self.clock = clock
+        self.models = models
+        self.epoch = secrets.token_hex(4)
+        self._rules = rules
+        self._worker = InferenceWorker(models)
+        self._sessions: dict[str, Session] = {}
+        self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._endings: dict[str, asyncio.TimerHandle] = {}
+        self._group: asyncio.TaskGroup | None = None
+
+    @property
+    def sessions(self) -> Mapping[str, Session]:
+        """Open sessions by id."""
+        return self._sessions
+
+    @property
+    def is_running(self) -> bool:
+        """Whether sessions can be opened."""
+        return self._group is not None
+
+    @asynccontextmanager
+    async def run(self) -> AsyncIterator[None]:
+        """Serve while the context lasts."""
+        async with asyncio.TaskGroup() as group:
+            self._group = group
+            worker = group.create_task(self._worker.run(), name="inference")
+            try:
+                yield
+            finally:
+                self._group = None
+                for ending in self._endings.values():
+                    ending.cancel()
+                for session in list(self._sessions):
+                    self._close(session, CLOSE_GOING_AWAY, "the server is stopping")
+                worker.cancel()
+
+    def join(self, session_id: str, client: Client) -> Session:
+        """Bring a client into its session, which is opened if need be.
+
+        Raises:
+            HubFull: If there are too many sessions.
+            InvalidInput: If the session refuses the client.
+        """
+        session = self._sessions.get(session_id)
+        if session is None:
+            session = self._open(session_id)
+        ending = self._endings.pop(session_id, None)
+        if ending is not None:
+            ending.cancel()
+        try:
+            session.join(client)
+        finally:
+            self._end_if_empty(session)
+        return session
+
+    def leave(self, session: Session, client: Client) -> None:
+        """A client's connection is over."""
+        if client in session.audience.clients:
+            session.leave(client)
+        if self._sessions.get(session.id) is session:
+            self._end_if_empty(session)
+
+    def welcome(self, session: Session, role: m.Role) -> m.Welcome:
+        """What a client is told when it may stay."""
+        gate, server = self.settings.gate, self.settings.server
+        predictor, classifier = self.models.predictor, self.models.classifier
+        return m.Welcome(
+            protocol=m.PROTOCOL,
+            server="agent-server",
+            server_version=__version__,
+            session=session.id,
+            role=role,
+            epoch=self.epoch,
+            sequence=session.sequence,
+            heartbeat_s=server.heartbeat_s,
+            labels=list(classifier.labels),
+            gate=m.GateLevels(
+                gate.mode,
+                gate.enter_valence,
+                gate.enter_arousal,
+                gate.leave_valence,
+                gate.leave_arousal,
+            ),
+            limits=m.Limits(server.max_message_bytes, server.max_errors),
+            models=[
+                m.ModelInfo(predictor.name, "predict", predictor.sha256),
+                m.ModelInfo(classifier.name, "classify", classifier.sha256),
+            ],
+            scene=session.scene(),
+        )
+
+    def _open(self, session_id: str) -> Session:
+        if self._group is None or len(self._sessions) >= self.settings.server.max_sessions:
+            raise HubFull
+        session = Session(
+            session_id,
+            self.settings,
+            self._rules,
+            self._worker,
+            self.clock,
+            self.epoch,
+            NoJournal(),
+        )
+        self._sessions[session_id] = session
+        self._tasks[session_id] = self._group.create_task(
+            self._guard(session), name=f"session {session_id}"
+        )
+        log.info("session %s: opened", session_id)
+        return session
+
+    async def _guard(self, session: Session) -> None:
+        """Keep a fault of one session from ending the others."""
+        try:
+            await session.run()
+        except* Exception:  # isolation of sessions: whatever it was, the others go on
+            log.exception("session %s: failed and is closed", session.id)
+            self._close(session.id, CLOSE_INTERNAL, "the session failed; connect again")
+
+    def _end_if_empty(self, session: Session) -> None:
+        if session.audience.clients or session.id in self._endings or self._group is None:
+            return
+        self._endings[session.id] = asyncio.get_running_loop().call_later(
+            self.settings.server.session_linger_s,
+            self._close,
+            session.id,
+            CLOSE_GOING_AWAY,
+            "the session was empty",
+        )
+
+    def _close(self, session_id: str, code: int, reason: str) -> None:
+        session = self._sessions.pop(session_id)
+        self._endings.pop(session_id, None)
+        for client in session.audience.clients:
+            client.outbox.close(code, reason)
+        self._tasks.pop(session_id).cancel()
+        log.info("session %s: closed: %s", session_id, reason)

@@ -1,0 +1,110 @@
+"""Running the application under uvicorn."""
+
+import asyncio
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import uvicorn
+
+from agent_server import assets
+from agent_server.clock import SystemClock
+from agent_server.config import Settings
+from agent_server.errors import ConfigError
+from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
+from agent_server.scene.rulebook import Rules
+from agent_server.scene.rules import default_rules, load_rules
+from agent_server.service.hub import Hub
+from agent_server.service.worker import Models
+from agent_server.transports.app import create_app
+
+PREDICTOR = "ma_wgan_server"
+CLASSIFIER = "interformer_server"
+
+
+def load_models(bundles: Path | None = None) -> Models:
+    """Load and check the bundles that the server uses.
+
+    Args:
+        bundles: Folder of the bundles; None takes those that ship.
+
+    Raises:
+        BundleError: If a bundle is missing, altered or wrong.
+    """
+    folder = bundles or assets.bundles()
+    return Models(OnnxPredictor(folder / PREDICTOR), OnnxClassifier(folder / CLASSIFIER))
+
+
+def build_hub(settings: Settings, models: Models) -> Hub:
+    """Put the sessions' hub together.
+
+    Raises:
+        RuleError: If the rule file is wrong.
+    """
+    return Hub(settings, load_room(settings, models), models, SystemClock())
+
+
+def load_room(settings: Settings, models: Models) -> Rules:
+    """Read the room's rules for the gestures that the classifier knows.
+
+    Raises:
+        RuleError: If the rule file is wrong.
+    """
+    known = models.classifier.labels
+    if settings.rules is None:
+        return default_rules(known)
+    return load_rules(Path(settings.rules), known)
+
+
+def bind(settings: Settings) -> socket.socket:
+    """Take the configured address.
+
+    Raises:
+        ConfigError: If it is not to be had.
+    """
+    server = settings.server
+    family = socket.AF_INET6 if ":" in server.host else socket.AF_INET
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((server.host, server.port))
+    except OSError as error:
+        listener.close()
+        raise ConfigError(
+            f"cannot listen on {server.host}:{server.port}: {error.strerror}; choose another with "
+            "--port, or --port 0 for any"
+        ) from error
+    return listener
+
+
+def address(listener: socket.socket) -> str:
+    """The HTTP address of a bound socket."""
+    host, port = listener.getsockname()[:2]
+    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+
+
+@asynccontextmanager
+async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[uvicorn.Server]:
+    """Serve while the context lasts; entered when connections are taken."""
+    server = uvicorn.Server(
+        uvicorn.Config(
+            create_app(hub, assets.page()),
+            ws="websockets-sansio",
+            # The protocol's own limit answers with a sentence; this one only guards memory.
+            ws_max_size=4 * hub.settings.server.max_message_bytes,
+            ws_per_message_deflate=False,
+            log_level="warning",
+            lifespan="on",
+            timeout_graceful_shutdown=5,
+        )
+    )
+    task = asyncio.create_task(server.serve(sockets=[listener]), name="uvicorn")
+    try:
+        # uvicorn announces its start by an attribute alone.
+        while not server.started and not task.done():  # noqa: ASYNC110
+            await asyncio.sleep(0.01)
+        yield server
+    finally:
+        server.should_exit = True
+        await task

@@ -1,0 +1,217 @@
+"""A websocket connection of a client, from its hello to its end."""
+
+import asyncio
+import logging
+import re
+from typing import get_args
+
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+
+from agent_server.errors import InvalidInput
+from agent_server.protocol import connection as c
+from agent_server.protocol import messages as m
+from agent_server.protocol.codec import CODECS, Codec, Wire
+from agent_server.service.audience import Client
+from agent_server.service.hub import Hub, HubFull
+from agent_server.service.mailbox import Outbox, Overflow
+from agent_server.service.session import Session
+
+log = logging.getLogger(__name__)
+
+_SESSION_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+
+
+def websocket_router(hub: Hub) -> APIRouter:
+    """Routes of the three roles: ``/v1/sessions/{id}/sensor``, ``renderer`` and ``monitor``."""
+    router = APIRouter()
+
+    @router.websocket("/v1/sessions/{session_id}/{role}")
+    async def endpoint(websocket: WebSocket, session_id: str, role: str) -> None:
+        codec = _agree(websocket)
+        await websocket.accept(subprotocol=codec and codec.subprotocol)
+        link = _Link(websocket, codec or CODECS[m.SUBPROTOCOL_JSON])
+        offered = websocket.scope.get("subprotocols", [])
+        if codec is None and offered:
+            await link.dismiss(
+                c.CLOSE_WRONG_VERSION,
+                "wrong_version",
+                f"the client offers the subprotocols {', '.join(offered)}, this server speaks "
+                f"protocol {m.PROTOCOL}: {', '.join(CODECS)}",
+            )
+        elif not _SESSION_ID.fullmatch(session_id):
+            await link.dismiss(
+                c.CLOSE_BAD_HELLO,
+                "bad_session_id",
+                "a session id has 1 to 64 letters, digits, '.', '_' and '-'",
+            )
+        elif role not in get_args(m.Role):
+            await link.dismiss(
+                c.CLOSE_BAD_HELLO,
+                "unknown_role",
+                f"there is no role {role!r}: connect as {', '.join(get_args(m.Role))}",
+            )
+        else:
+            await _Visit(hub, link, session_id, role).run()
+
+    return router
+
+
+def _agree(websocket: WebSocket) -> Codec | None:
+    """The first coding that the client offers and the server speaks; JSON if it offers none."""
+    offered = websocket.scope.get("subprotocols", [])
+    if not offered:
+        return None
+    return next((CODECS[name] for name in offered if name in CODECS), None)
+
+
+class _Link:
+    """A websocket that carries messages."""
+
+    def __init__(self, websocket: WebSocket, codec: Codec) -> None:
+        self.codec = codec
+        self._websocket = websocket
+
+    async def receive(self) -> Wire:
+        """The next message.
+
+        Raises:
+            WebSocketDisconnect: When the client has gone.
+        """
+        event = await self._websocket.receive()
+        if event["type"] == "websocket.disconnect":
+            raise WebSocketDisconnect(event.get("code", c.CLOSE_NORMAL))
+        text = event.get("text")
+        return text if text is not None else event["bytes"]
+
+    async def send(self, message: m.Message) -> None:
+        data = self.codec.encode(message)
+        if isinstance(data, str):
+            await self._websocket.send_text(data)
+        else:
+            await self._websocket.send_bytes(data)
+
+    async def close(self, code: int, reason: str) -> None:
+        # A close frame carries at most 123 bytes of reason.
+        await self._websocket.close(code, reason.encode()[:123].decode(errors="ignore"))
+
+    async def dismiss(self, close_code: int, code: str, sentence: str) -> None:
+        """Send a fatal error and close."""
+        await self.send(m.ErrorMessage(code, sentence, fatal=True))
+        await self.close(close_code, sentence)
+
+
+class _Visit:
+    """One client's stay."""
+
+    def __init__(self, hub: Hub, link: _Link, session_id: str, role: m.Role) -> None:
+        server = hub.settings.server
+        self._hub = hub
+        self._link = link
+        self._session_id = session_id
+        self._connection = c.ServerConnection(
+            role,
+            link.codec,
+            max_message_bytes=server.max_message_bytes,
+            max_errors=server.max_errors,
+        )
+        self._outbox = Outbox(server.command_queue)
+        self._client: Client | None = None
+        self._session: Session | None = None
+
+    async def run(self) -> None:
+        try:
+            async with asyncio.TaskGroup() as group:
+                writer = group.create_task(self._write())
+                timeout = self._hub.settings.server.hello_timeout_s
+                reader = group.create_task(self._read(timeout))
+                # Whoever ends first ends the visit; the writer still sends what it has.
+                await asyncio.wait((reader, writer), return_when=asyncio.FIRST_COMPLETED)
+                if reader.done():
+                    self._outbox.close(c.CLOSE_NORMAL, "")
+                    await asyncio.wait((writer,), timeout=2.0)
+                reader.cancel()
+                writer.cancel()
+        except* WebSocketDisconnect:
+            log.debug("session %s: a %s left", self._session_id, self._connection.role)
+        finally:
+            self._connection.close()
+            if self._session is not None and self._client is not None:
+                self._hub.leave(self._session, self._client)
+
+    async def _read(self, hello_timeout_s: float) -> None:
+        try:
+            async with asyncio.timeout(hello_timeout_s):
+                await self._take(await self._link.receive())
+        except TimeoutError:
+            self._refuse(
+                c.Refused(
+                    m.ErrorMessage("no_hello", "no hello came in time", fatal=True),
+                    c.CLOSE_HELLO_TIMEOUT,
+                )
+            )
+        while self._connection.state is c.State.OPEN and self._outbox.close_code is None:
+            await self._take(await self._link.receive())
+
+    async def _take(self, data: Wire) -> None:
+        event = self._connection.receive(data, self._hub.clock.now_ns())
+        match event:
+            case c.Received(message):
+                assert self._session is not None  # noqa: S101 - OPEN means that it has joined
+                assert self._client is not None  # noqa: S101
+                try:
+                    self._session.receive(self._client, message)
+                except InvalidInput as error:
+                    self._refuse(self._connection.refuse(error))
+            case c.Reply(message):
+                self._outbox.update("reply", message)
+            case c.Refused():
+                self._refuse(event)
+            case c.Greeted(hello):
+                self._join(hello)
+
+    def _join(self, hello: m.Hello) -> None:
+        client = Client(self._connection.role, hello, self._outbox)
+        try:
+            session = self._hub.join(self._session_id, client)
+        except HubFull:
+            limit = self._hub.settings.server.max_sessions
+            self._refuse(
+                c.Refused(
+                    m.ErrorMessage(
+                        "full", f"{limit} sessions are open and no more are admitted", fatal=True
+                    ),
+                    c.CLOSE_FULL,
+                )
+            )
+            return
+        except InvalidInput as error:
+            self._refuse(
+                c.Refused(
+                    m.ErrorMessage(error.code, str(error), error.field, fatal=True),
+                    c.CLOSE_REPLACED,
+                )
+            )
+            return
+        self._client, self._session = client, session
+        # Before anything that the session has for this client.
+        self._outbox.precede(self._hub.welcome(session, client.role))
+
+    def _refuse(self, refused: c.Refused) -> None:
+        if self._session is not None:
+            self._session.counters["rejected_messages"] += 1
+        try:
+            self._outbox.post(refused.error)
+        except Overflow:
+            self._outbox.close(c.CLOSE_TOO_SLOW, "too many answers wait; read faster")
+        if refused.close_code is not None:
+            self._outbox.close(refused.close_code, refused.error.message)
+            self._connection.close()
+
+    async def _write(self) -> None:
+        while True:
+            messages = await self._outbox.take()
+            for message in messages:
+                await self._link.send(message)
+            if not messages and self._outbox.close_code is not None:
+                await self._link.close(self._outbox.close_code, self._outbox.close_reason)
+                return
