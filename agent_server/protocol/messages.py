@@ -19,6 +19,7 @@ SUBPROTOCOL_JSON = "agent-server.v1.json"
 SUBPROTOCOL_MSGPACK = "agent-server.v1.msgpack"
 
 Role = Literal["sensor", "renderer", "monitor"]
+Face = Literal["expected", "none"]
 Nanoseconds = Annotated[int, Meta(ge=0, le=MAX_STAMP_NS)]
 Level = Annotated[float, Meta(ge=-AFFECT_LIMIT, le=AFFECT_LIMIT)]
 Name = Annotated[str, Meta(min_length=1, max_length=64)]
@@ -61,7 +62,7 @@ class Hello(Message, tag="hello"):
     client: Name
     client_version: Annotated[str, Meta(max_length=64)] = ""
     token: Annotated[str, Meta(max_length=4096)] | None = None
-    face: Literal["expected", "none"] = "expected"
+    face: Face = "expected"
     mirror: bool = False
     take_over: bool = False
     time: Annotated[str, Meta(max_length=64)] | None = None

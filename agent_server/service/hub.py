@@ -22,7 +22,7 @@ log = logging.getLogger(__name__)
 CLOSE_INTERNAL = 1011
 
 
-class HubFull(Exception):  # noqa: N818 - an answer, not a fault of the program
+class HubFull(Exception):
     """No further session is admitted."""
 
 

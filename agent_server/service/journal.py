@@ -1,46 +1,70 @@
-"""Where a session is written down as it happens, or not."""
+"""Where a session is written down as it happens, or not.
+
+:class:`agent_server.recording.writer.RecordingWriter` is one.
+"""
 
 from typing import Protocol
 
 from agent_server.domain.affect import AffectSample
+from agent_server.domain.command import Ack
+from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.skeleton import SkeletonFrame
-from agent_server.protocol.messages import AckMessage, CommandMessage, DecisionMessage, SceneEvent
+from agent_server.protocol.messages import CommandMessage, DecisionMessage
 from agent_server.recording.records import CoreEntry
-
-JournalMessage = AckMessage | SceneEvent | CommandMessage | DecisionMessage
 
 
 class Journal(Protocol):
     """Takes everything that enters and leaves a session, in the order in which it does."""
 
-    def skeleton(self, frame: SkeletonFrame) -> None:
+    def append_skeleton(self, frame: SkeletonFrame) -> None:
         """A frame was taken."""
         ...
 
-    def affect(self, sample: AffectSample) -> None:
+    def append_affect(self, sample: AffectSample) -> None:
         """A sample was taken."""
         ...
 
-    def message(self, stamp_ns: int, message: JournalMessage) -> None:
-        """A renderer said something, or a decision or command was made."""
+    def append_ack(self, ack: Ack) -> None:
+        """The renderer spoke of a command."""
         ...
 
-    def entry(self, entry: CoreEntry) -> None:
-        """The core was told something."""
+    def append_scene_event(self, event: ObjectChanged) -> None:
+        """Somebody changed an object."""
+        ...
+
+    def append_core(self, entry: CoreEntry) -> None:
+        """The core was told something else."""
+        ...
+
+    def append_decision(self, decision: DecisionMessage, stamp_ns: int) -> None:
+        """A decision was made."""
+        ...
+
+    def append_command(self, command: CommandMessage) -> None:
+        """A command was issued."""
         ...
 
 
 class NoJournal:
     """Writes nothing down."""
 
-    def skeleton(self, frame: SkeletonFrame) -> None:
+    def append_skeleton(self, frame: SkeletonFrame) -> None:
         """Do nothing."""
 
-    def affect(self, sample: AffectSample) -> None:
+    def append_affect(self, sample: AffectSample) -> None:
         """Do nothing."""
 
-    def message(self, stamp_ns: int, message: JournalMessage) -> None:
+    def append_ack(self, ack: Ack) -> None:
         """Do nothing."""
 
-    def entry(self, entry: CoreEntry) -> None:
+    def append_scene_event(self, event: ObjectChanged) -> None:
+        """Do nothing."""
+
+    def append_core(self, entry: CoreEntry) -> None:
+        """Do nothing."""
+
+    def append_decision(self, decision: DecisionMessage, stamp_ns: int) -> None:
+        """Do nothing."""
+
+    def append_command(self, command: CommandMessage) -> None:
         """Do nothing."""

@@ -10,7 +10,7 @@ from collections import deque
 from agent_server.protocol.messages import Message
 
 
-class Overflow(Exception):  # noqa: N818 - it is a signal to the shell, not an error of the program
+class Overflow(Exception):
     """Too many commands wait for a slow client."""
 
 

@@ -95,7 +95,7 @@ class Session:
             self._seat_renderer(client)
         self.audience.clients.append(client)
         if client.role == "sensor":
-            self._update_face(client, is_open=True)
+            self._update_face(is_open=True)
 
     def leave(self, client: Client) -> None:
         """Remove a client."""
@@ -105,7 +105,7 @@ class Session:
             if self._owners.get(kind) is client:
                 del self._owners[kind]
         if client.role == "sensor":
-            self._update_face(client, is_open=False)
+            self._update_face(is_open=False)
         if self._renderer is client:
             self._renderer = None
             self._set_renderer(False)
@@ -141,7 +141,7 @@ class Session:
         frame = convert.skeleton_from_message(message, stamp_ns)
         jobs = self._core.observe(frame)
         self.counters["frames"] += 1
-        self._journal.skeleton(frame)
+        self._journal.append_skeleton(frame)
         self._enqueue(jobs, arrival_ns)
         latest = self._core.perception.latest
         if latest is not None and self.audience.is_watched:
@@ -153,17 +153,17 @@ class Session:
         sample = convert.affect_from_message(message, stamp_ns)
         self._core.feel(sample)
         self.counters["affect_samples"] += 1
-        self._journal.affect(sample)
+        self._journal.append_affect(sample)
         self.audience.show(
             "affect", m.AffectTelemetry(sample.originating_ns, sample.valence, sample.arousal)
         )
 
     def _take_ack(self, client: Client, message: m.AckMessage) -> None:
         self._require_acting(client)
-        now_ns = self._now()
-        commands = self._core.acknowledge(convert.ack_from_message(message, now_ns))
+        ack = convert.ack_from_message(message, self._now())
+        commands = self._core.acknowledge(ack)
         self.counters["acks"] += 1
-        self._journal.message(now_ns, message)
+        self._journal.append_ack(ack)
         self._deliver(commands)
         self.audience.show(
             "ack",
@@ -173,10 +173,10 @@ class Session:
 
     def _take_scene_event(self, client: Client, message: m.SceneEvent) -> None:
         self._require_acting(client)
-        now_ns = self._now()
-        commands = self._core.change_object(ObjectChanged(now_ns, message.object, message.state))
+        event = ObjectChanged(self._now(), message.object, message.state)
+        commands = self._core.change_object(event)
         self.counters["scene_events"] += 1
-        self._journal.message(now_ns, message)
+        self._journal.append_scene_event(event)
         self._deliver(commands)
         self.audience.show_scene(self.scene())
 
@@ -201,7 +201,7 @@ class Session:
 
     def _lose_body(self, lost: BodyLost) -> None:
         self.counters["bodies_lost"] += 1
-        self._journal.entry(BodyGone(lost.stamp_ns, lost.body_id))
+        self._journal.append_core(BodyGone(lost.stamp_ns, lost.body_id))
         self._deliver(self._core.lose_body(lost))
 
     async def _decide(self, pending: PendingWindow, arrival_ns: int) -> None:
@@ -212,7 +212,7 @@ class Session:
             inference = await self._worker.infer(window)
         except InferenceError as error:
             self.counters["classifier_failures"] += 1
-            self._journal.entry(WindowSkipped(window.end_ns, window.index))
+            self._journal.append_core(WindowSkipped(window.end_ns, window.index))
             log.error("session %s: no decision on window %d: %s", self.id, window.index, error)
             self.audience.show("error", m.ErrorMessage("classifier_failed", str(error)))
             return
@@ -226,12 +226,12 @@ class Session:
         self.counters["decisions"] += 1
         failure = inference.forecast.failure
         self.counters["predictor_failures"] += failure is not None
-        self._journal.entry(WindowDone(window.end_ns, window.index, failure))
+        self._journal.append_core(WindowDone(window.end_ns, window.index, failure))
         decided = m.DecisionMessage(
             convert.decision_body(result.decision),
             self._timing(inference, arrival_ns, started_ns, begin_ns, end_ns),
         )
-        self._journal.message(window.end_ns, decided)
+        self._journal.append_decision(decided, window.end_ns)
         self.audience.show("decision", decided)
         if self.audience.is_watched:
             forecast = convert.forecast_message(window.index, window.end_ns, inference.forecast)
@@ -246,7 +246,7 @@ class Session:
             if is_busy or self._timeline.idle_ns(arrival_ns) < QUIET_NS:
                 continue
             now_ns = self._timeline.now(arrival_ns)
-            self._journal.entry(Tick(now_ns))
+            self._journal.append_core(Tick(now_ns))
             jobs, commands = self._core.tick(now_ns)
             self._enqueue(jobs, arrival_ns)
             self._deliver(commands)
@@ -264,7 +264,7 @@ class Session:
         if self._jobs and isinstance(skipped := self._jobs[-1].job, PendingWindow):
             self._jobs.pop()
             self.counters["skipped_windows"] += 1
-            self._journal.entry(WindowSkipped(skipped.window.end_ns, skipped.window.index))
+            self._journal.append_core(WindowSkipped(skipped.window.end_ns, skipped.window.index))
 
     # ------------------------------------------------------------------ output
 
@@ -276,7 +276,7 @@ class Session:
             self.counters["commands"] += 1
             message = convert.command_message(command, self._epoch)
             self.audience.order(message)
-            self._journal.message(command.issued_ns, message)
+            self._journal.append_command(message)
         if sent:
             self.audience.show_scene(self.scene())
 
@@ -340,7 +340,7 @@ class Session:
 
     def _set_renderer(self, attached: bool) -> None:
         now_ns = self._now()
-        self._journal.entry(RendererChanged(now_ns, attached))
+        self._journal.append_core(RendererChanged(now_ns, attached))
         self._deliver(self._core.set_renderer(attached, now_ns))
 
     def _require_acting(self, client: Client) -> None:
@@ -350,9 +350,9 @@ class Session:
                 code="not_acting",
             )
 
-    def _update_face(self, client: Client, *, is_open: bool) -> None:
-        """A face is expected as long as any sensor that is there expects one."""
-        sensors = list(self.audience.having("sensor"))
-        if sensors:
-            self._core.set_face(any(sensor.hello.face == "expected" for sensor in sensors))
-        self._journal.entry(SensorChanged(self._now(), is_open, client.hello.face))
+    def _update_face(self, *, is_open: bool) -> None:
+        """A face is expected unless every sensor that is there has none."""
+        faces = [sensor.hello.face for sensor in self.audience.having("sensor")]
+        face: m.Face = "expected" if "expected" in faces or not faces else "none"
+        self._core.set_face(face == "expected")
+        self._journal.append_core(SensorChanged(self._now(), is_open, face))

@@ -1,0 +1,134 @@
+"""A client of the server: says hello, sends and receives messages. For tools, tests and demos."""
+
+import asyncio
+from collections.abc import AsyncIterator, Iterable
+from contextlib import asynccontextmanager
+
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, WebSocketException
+from websockets.typing import Subprotocol
+
+from agent_server import __version__
+from agent_server.domain.affect import AffectSample
+from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.stamp import NS_PER_S
+from agent_server.errors import AgentServerError
+from agent_server.protocol import messages as m
+from agent_server.protocol.codec import CODECS, Codec
+from agent_server.protocol.convert import affect_to_message, pack_skeleton, skeleton_to_message
+
+
+class ConnectionFailed(AgentServerError):
+    """The server cannot be reached, or does not want this client; the text says why."""
+
+
+class Client:
+    """An open connection whose hello was answered.
+
+    Attributes:
+        welcome: The server's answer.
+    """
+
+    def __init__(self, socket: ClientConnection, codec: Codec, welcome: m.Welcome) -> None:
+        self.welcome = welcome
+        self._socket = socket
+        self._codec = codec
+
+    async def send(self, message: m.Message) -> None:
+        """Send one message.
+
+        Raises:
+            ConnectionFailed: If the connection is gone.
+        """
+        if isinstance(message, m.Skeleton) and self._codec.subprotocol == m.SUBPROTOCOL_MSGPACK:
+            message = pack_skeleton(message)
+        try:
+            await self._socket.send(self._codec.encode(message))
+        except ConnectionClosed as error:
+            raise ConnectionFailed(f"the server closed the connection: {error}") from error
+
+    async def __aiter__(self) -> AsyncIterator[m.Message]:
+        """Messages of the server until the connection ends in order.
+
+        Raises:
+            ConnectionFailed: If it ends otherwise.
+        """
+        try:
+            async for data in self._socket:
+                yield self._codec.decode_server(data)
+        except ConnectionClosed as error:
+            raise ConnectionFailed(f"the server closed the connection: {error}") from error
+
+
+@asynccontextmanager
+async def join(
+    url: str,
+    session: str,
+    role: m.Role,
+    *,
+    hello: m.Hello | None = None,
+    subprotocol: str = m.SUBPROTOCOL_JSON,
+) -> AsyncIterator[Client]:
+    """Connect to a session and be welcomed.
+
+    Args:
+        url: Address of the server, for example ``ws://127.0.0.1:8765``; ``http`` will do.
+        session: Id of the session.
+        role: What to come as.
+        hello: What to say; None says who this is.
+        subprotocol: Which coding to speak.
+
+    Raises:
+        ConnectionFailed: If the server cannot be reached or refuses.
+    """
+    codec = CODECS[subprotocol]
+    hello = hello or m.Hello(m.PROTOCOL, "agent-server-client", __version__)
+    base = url.rstrip("/").replace("http", "ws", 1) if url.startswith("http") else url.rstrip("/")
+    address = f"{base}/v1/sessions/{session}/{role}"
+    try:
+        socket = await connect(
+            address, subprotocols=[Subprotocol(subprotocol)], compression=None, max_size=None
+        )
+    except (OSError, WebSocketException, TimeoutError) as error:
+        raise ConnectionFailed(f"cannot connect to {address}: {error}") from error
+    async with socket:
+        try:
+            await socket.send(codec.encode(hello))
+            answer = codec.decode_server(await socket.recv())
+        except ConnectionClosed as error:
+            raise ConnectionFailed(f"{address} closed the connection: {error}") from error
+        if isinstance(answer, m.ErrorMessage):
+            raise ConnectionFailed(f"{address} refused: {answer.message}")
+        if not isinstance(answer, m.Welcome):
+            raise ConnectionFailed(f"{address} did not answer hello with welcome")
+        yield Client(socket, codec, answer)
+
+
+async def send_paced(
+    client: Client, events: Iterable[SkeletonFrame | AffectSample], speed: float
+) -> int:
+    """Send recorded events with the timing of their stamps.
+
+    Args:
+        client: A sensor's connection.
+        events: Ordered by their stamps.
+        speed: 1 is real time, 2 twice as fast; ``inf`` sends as fast as the server takes them.
+
+    Returns:
+        How many were sent.
+    """
+    loop = asyncio.get_running_loop()
+    start_s = loop.time()
+    first_ns: int | None = None
+    count = 0
+    for event in events:
+        first_ns = event.originating_ns if first_ns is None else first_ns
+        due_s = start_s + (event.originating_ns - first_ns) / NS_PER_S / speed
+        if (wait_s := due_s - loop.time()) > 0:
+            await asyncio.sleep(wait_s)
+        if isinstance(event, AffectSample):
+            await client.send(affect_to_message(event))
+        else:
+            await client.send(skeleton_to_message(event))
+        count += 1
+    return count
