@@ -1,0 +1,168 @@
+"""The records of an MCAP file one by one, with the place of each for the errors.
+
+The library's own readers follow lengths that they find in the file wherever these lead, and
+raise what the parser happens to raise. Here every length is checked against the file, and
+whatever is wrong becomes one error that says where.
+"""
+
+import struct
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import BinaryIO, TypeVar
+
+import zstandard
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Schema
+from mcap.stream_reader import MAGIC_SIZE, breakup_chunk
+from mcap.writer import MCAP0_MAGIC
+
+from agent_server.errors import RecordingError
+
+MAGIC = MCAP0_MAGIC
+RECOVER_HINT = "`agent-server recover IN OUT` saves what is whole"
+
+_PREFIX = struct.Struct("<BQ")  # opcode, length of what follows
+_FOOTER_SIZE = _PREFIX.size + 20
+
+_PARSE_ERRORS = (McapError, zstandard.ZstdError, struct.error, ValueError, MemoryError)
+"""All that the library raises over bytes that make no sense; its CRC error is a ValueError."""
+
+R = TypeVar("R", bound=McapRecord)
+
+
+class DamagedError(RecordingError):
+    """A recording is truncated or corrupt.
+
+    Args:
+        path: The recording.
+        offset: Byte at which the damaged record begins.
+        why: What is wrong with it.
+    """
+
+    def __init__(self, path: Path, offset: int, why: str) -> None:
+        super().__init__(f"{path} is damaged at byte {offset}: {why}; {RECOVER_HINT}")
+        self.offset = offset
+        self.why = why
+
+
+@dataclass(frozen=True, slots=True)
+class RawRecord:
+    """One record as it stands in the file.
+
+    Attributes:
+        path: The file.
+        offset: Byte at which it begins.
+        opcode: Its kind.
+        data: What follows its length.
+    """
+
+    path: Path
+    offset: int
+    opcode: int
+    data: bytes
+
+    @property
+    def end(self) -> int:
+        """Byte after it."""
+        return self.offset + _PREFIX.size + len(self.data)
+
+    def parse(self, read: Callable[[ReadDataStream], R]) -> R:
+        """The record as a library type.
+
+        Raises:
+            DamagedError: If it cannot be one.
+        """
+        try:
+            return read(ReadDataStream(BytesIO(self.data)))
+        except _PARSE_ERRORS as error:
+            raise DamagedError(self.path, self.offset, f"{error!r}") from error
+
+    def chunk(self) -> list[Schema | Channel | Message]:
+        """What a chunk holds, checked against its CRC.
+
+        Raises:
+            DamagedError: If it cannot be read.
+        """
+        if self.opcode != Opcode.CHUNK:
+            raise DamagedError(self.path, self.offset, "this is no chunk")
+        chunk = self.parse(Chunk.read)
+        try:
+            return breakup_chunk(chunk, validate_crc=True)  # type: ignore[return-value]
+        except _PARSE_ERRORS as error:
+            raise DamagedError(self.path, self.offset, f"its chunk is corrupt ({error})") from error
+
+
+def open_file(path: Path) -> BinaryIO:
+    """Open a recording that begins as one.
+
+    Raises:
+        RecordingError: If it cannot be opened or is no MCAP file.
+    """
+    try:
+        file = path.open("rb")
+        magic = file.read(MAGIC_SIZE)
+    except OSError as error:
+        raise RecordingError(f"{path} cannot be read: {error.strerror or error}") from error
+    if magic != MAGIC:
+        file.close()
+        raise RecordingError(f"{path} is no MCAP file: it begins with {magic!r}")
+    return file
+
+
+def read_record(file: BinaryIO, path: Path, offset: int, end: int) -> RawRecord:
+    """The record at ``offset`` of a part of the file that ends at ``end``.
+
+    Raises:
+        DamagedError: If it does not end within that part.
+    """
+    file.seek(offset)
+    prefix = file.read(_PREFIX.size)
+    if len(prefix) < _PREFIX.size or offset + _PREFIX.size > end:
+        raise DamagedError(path, offset, "the file ends within a record")
+    opcode, length = _PREFIX.unpack(prefix)
+    if offset + _PREFIX.size + length > end:
+        raise DamagedError(path, offset, "a record is longer than what is left of the file")
+    return RawRecord(path, offset, opcode, file.read(length))
+
+
+def read_records(file: BinaryIO, path: Path, start: int, end: int) -> Iterator[RawRecord]:
+    """All records from ``start`` to ``end``, in file order.
+
+    Raises:
+        DamagedError: At the first one that does not end within that part.
+    """
+    while start < end:
+        record = read_record(file, path, start, end)
+        yield record
+        start = record.end
+
+
+def read_summary(file: BinaryIO, path: Path, size: int) -> list[RawRecord]:
+    """The records of the summary of a file of ``size`` bytes, checked against their CRC.
+
+    Raises:
+        RecordingError: If there is none because the writer was interrupted.
+        DamagedError: If it is corrupt.
+    """
+    file.seek(max(size - MAGIC_SIZE, 0))
+    if size < 2 * MAGIC_SIZE + _FOOTER_SIZE or file.read(MAGIC_SIZE) != MAGIC:
+        raise RecordingError(
+            f"{path} is truncated: it has no end, its writer was interrupted; {RECOVER_HINT}"
+        )
+    footer_start = size - MAGIC_SIZE - _FOOTER_SIZE
+    raw = read_record(file, path, footer_start, size - MAGIC_SIZE)
+    if raw.opcode != Opcode.FOOTER:
+        raise DamagedError(path, footer_start, "there is no footer")
+    footer = raw.parse(Footer.read)
+    if not 0 < footer.summary_start <= footer_start:
+        raise DamagedError(path, footer_start, "there is no summary")
+    file.seek(footer.summary_start)
+    covered = file.read(footer_start + _FOOTER_SIZE - 4 - footer.summary_start)
+    if footer.summary_crc and zlib.crc32(covered) != footer.summary_crc:
+        raise DamagedError(path, footer.summary_start, "the summary's CRC is wrong")
+    return list(read_records(file, path, footer.summary_start, footer_start))

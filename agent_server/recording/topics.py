@@ -1,0 +1,41 @@
+"""The topics of a recording and the type of the records on each."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from agent_server.protocol import messages as m
+from agent_server.recording.records import CoreEntry, LabelRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Topic:
+    """One stream of records.
+
+    Attributes:
+        name: For example ``/skeleton``.
+        schema: Name of its schema.
+        record: Type of its records, or a union of types.
+    """
+
+    name: str
+    schema: str
+    record: Any
+
+
+SKELETON = Topic("/skeleton", "agent_server.Skeleton", m.Skeleton)
+AFFECT = Topic("/affect", "agent_server.Affect", m.Affect)
+ACK = Topic("/ack", "agent_server.Ack", m.AckMessage)
+SCENE_EVENT = Topic("/scene_event", "agent_server.SceneEvent", m.SceneEvent)
+SCENE = Topic("/scene", "agent_server.SceneState", m.SceneState)
+DECISION = Topic("/decision", "agent_server.Decision", m.DecisionMessage)
+COMMAND = Topic("/command", "agent_server.Command", m.CommandMessage)
+LABEL = Topic("/label", "agent_server.Label", LabelRecord)
+CORE = Topic("/core", "agent_server.Core", CoreEntry)
+
+RAW_INPUTS: tuple[Topic, ...] = (SKELETON, AFFECT, ACK, SCENE_EVENT)
+"""What clients sent in, as it entered the core."""
+
+TOPICS: dict[str, Topic] = {
+    topic.name: topic for topic in (*RAW_INPUTS, SCENE, DECISION, COMMAND, LABEL, CORE)
+}
+"""Every topic by its name."""
