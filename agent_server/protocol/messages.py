@@ -20,6 +20,9 @@ SUBPROTOCOL_MSGPACK = "agent-server.v1.msgpack"
 
 Role = Literal["sensor", "renderer", "monitor"]
 Face = Literal["expected", "none"]
+Topic = Literal[
+    "pose", "forecast", "affect", "decision", "command", "ack", "scene", "stats", "error"
+]
 Nanoseconds = Annotated[int, Meta(ge=0, le=MAX_STAMP_NS)]
 Level = Annotated[float, Meta(ge=-AFFECT_LIMIT, le=AFFECT_LIMIT)]
 Name = Annotated[str, Meta(min_length=1, max_length=64)]
@@ -55,7 +58,8 @@ class Hello(Message, tag="hello"):
     """First message on every connection.
 
     ``face`` is what a sensor knows of the face: ``expected`` when affect follows, ``none``
-    for a headset. ``time`` is wall time in ISO 8601, for people.
+    for a headset. ``topics`` are the kinds of telemetry that a monitor wants, all if null.
+    ``time`` is wall time in ISO 8601, for people.
     """
 
     protocol: Annotated[str, Meta(pattern=r"^\d+\.\d+$")]
@@ -65,6 +69,7 @@ class Hello(Message, tag="hello"):
     face: Face = "expected"
     mirror: bool = False
     take_over: bool = False
+    topics: Annotated[list[Topic], Meta(max_length=16)] | None = None
     time: Annotated[str, Meta(max_length=64)] | None = None
 
 

@@ -24,6 +24,10 @@ class Client:
     outbox: Outbox
     streams: set[str] = field(default_factory=set)
 
+    def wants(self, topic: m.Topic) -> bool:
+        """Whether it asked for this kind of telemetry."""
+        return self.hello.topics is None or topic in self.hello.topics
+
 
 class Audience:
     """The clients of one session."""
@@ -36,19 +40,19 @@ class Audience:
         return (client for client in self.clients if client.role == role)
 
     @property
-    def is_watched(self) -> bool:
-        """Whether any monitor is there."""
-        return any(True for _ in self.having("monitor"))
-
-    @property
     def missed(self) -> int:
         """Telemetry messages that monitors were too slow for."""
         return sum(client.outbox.missed for client in self.having("monitor"))
 
-    def show(self, topic: str, message: m.Message) -> None:
+    def wants(self, topic: m.Topic) -> bool:
+        """Whether any monitor wants this kind of telemetry."""
+        return any(client.wants(topic) for client in self.having("monitor"))
+
+    def show(self, topic: m.Topic, message: m.Message) -> None:
         """Give telemetry to the monitors; only the latest of a topic waits for a slow one."""
         for client in self.having("monitor"):
-            client.outbox.update(topic, message)
+            if client.wants(topic):
+                client.outbox.update(topic, message)
 
     def show_scene(self, scene: m.SceneState) -> None:
         """Give the room's state to monitors and renderers."""

@@ -144,7 +144,7 @@ class Session:
         self._journal.append_skeleton(frame)
         self._enqueue(jobs, arrival_ns)
         latest = self._core.perception.latest
-        if latest is not None and self.audience.is_watched:
+        if latest is not None and self.audience.wants("pose"):
             self.audience.show("pose", convert.pose_message(latest))
 
     def _take_affect(self, client: Client, message: m.Affect, arrival_ns: int) -> None:
@@ -233,9 +233,10 @@ class Session:
         )
         self._journal.append_decision(decided, window.end_ns)
         self.audience.show("decision", decided)
-        if self.audience.is_watched:
+        if self.audience.wants("forecast"):
             forecast = convert.forecast_message(window.index, window.end_ns, inference.forecast)
             self.audience.show("forecast", forecast)
+        if self.audience.wants("stats"):
             self.audience.show("stats", self._stats())
 
     async def _tick(self) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from agent_server.domain.gesture import Classification
 from agent_server.domain.model import Classifier
-from agent_server.domain.motion import SEEN_FRAMES, Forecast, Window
+from agent_server.domain.motion import Forecast, Window
 from agent_server.skeleton.normalise import normalise
 
 
@@ -24,6 +24,6 @@ def classify(
             for window, forecast in zip(windows, forecasts, strict=True)
         ]
     )
-    normalised, _ = normalise(motion, SEEN_FRAMES - 1)
+    normalised, _ = normalise(motion)
     probabilities = classifier.classify(normalised)
     return [Classification(classifier.labels, row) for row in probabilities]

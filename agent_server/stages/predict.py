@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from agent_server.domain.model import Predictor
-from agent_server.domain.motion import PREDICTED_FRAMES, SEEN_FRAMES, Forecast, Window
+from agent_server.domain.motion import PREDICTED_FRAMES, Forecast, Window
 from agent_server.errors import InferenceError
 from agent_server.skeleton.normalise import denormalise, normalise
 
@@ -19,7 +19,7 @@ def predict(predictor: Predictor, windows: Sequence[Window]) -> list[Forecast]:
     A window whose forecast fails is completed by its last frame, and the forecast says why.
     """
     seen = np.stack([window.positions for window in windows])
-    normalised, origin = normalise(seen, SEEN_FRAMES - 1)
+    normalised, origin = normalise(seen)
     try:
         future = denormalise(predictor.predict(normalised), origin)
     except InferenceError as error:

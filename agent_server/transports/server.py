@@ -85,8 +85,12 @@ def address(listener: socket.socket) -> str:
 
 
 @asynccontextmanager
-async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[uvicorn.Server]:
-    """Serve while the context lasts; entered when connections are taken."""
+async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[asyncio.Task[None]]:
+    """Serve while the context lasts; entered when connections are taken.
+
+    Yields:
+        A task that ends when the process is asked to stop by a signal.
+    """
     server = uvicorn.Server(
         uvicorn.Config(
             create_app(hub, assets.page()),
@@ -104,7 +108,7 @@ async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[uvicorn.Se
         # uvicorn announces its start by an attribute alone.
         while not server.started and not task.done():  # noqa: ASYNC110
             await asyncio.sleep(0.01)
-        yield server
+        yield task
     finally:
         server.should_exit = True
         await task

@@ -1,0 +1,56 @@
+"""``agent-server bench``."""
+
+from typing import Annotated
+
+import msgspec
+import typer
+
+from agent_server.bench.decision import measure_decisions
+from agent_server.bench.ingest import measure_ingest
+from agent_server.bench.load import LoadResult, measure_load
+from agent_server.cli.options import JsonOption, run
+from agent_server.config import Settings
+from agent_server.transports.server import load_models, load_room
+
+bench = typer.Typer(name="bench", help="Measure the product on this machine.", no_args_is_help=True)
+
+
+@bench.command()
+def ingest(
+    rounds: Annotated[int, typer.Option(min=1, help="How often to run the stream.")] = 7,
+    as_json: JsonOption = False,
+) -> None:
+    """Decode, validate, retarget, resample and window one frame."""
+    _show(measure_ingest(rounds), as_json=as_json)
+
+
+@bench.command()
+def decision(
+    rounds: Annotated[int, typer.Option(min=1, help="How often to run the stream.")] = 5,
+    as_json: JsonOption = False,
+) -> None:
+    """One decision, stage by stage, on one thread."""
+    models = load_models()
+    rules = load_room(Settings(), models)
+    _show(measure_decisions(models, rules, rounds), as_json=as_json)
+
+
+@bench.command()
+def load(
+    sessions: Annotated[int, typer.Option(min=1, help="People at once.")] = 10,
+    seconds: Annotated[float, typer.Option(min=2.0, help="For how long.")] = 15.0,
+    as_json: JsonOption = False,
+) -> None:
+    """Real websocket clients against a server in another process; body only."""
+    results: list[LoadResult] = []
+
+    async def measure() -> None:
+        results.append(await measure_load(sessions, seconds))
+
+    run(measure())
+    _show(results[0], as_json=as_json)
+
+
+def _show(result: object, *, as_json: bool) -> None:
+    data = msgspec.json.encode(result)
+    print(data.decode() if as_json else msgspec.json.format(data, indent=2).decode())

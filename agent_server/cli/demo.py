@@ -1,0 +1,103 @@
+"""``agent-server demo``."""
+
+import asyncio
+import os
+import socket
+import sys
+import webbrowser
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from agent_server import __version__, assets
+from agent_server.cli.options import PortOption, run, settings_with
+from agent_server.cli.story import Story
+from agent_server.domain.affect import AffectSample
+from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.stamp import NS_PER_MS
+from agent_server.protocol import messages as m
+from agent_server.recording.reader import Recording, open_recording
+from agent_server.service.hub import Hub
+from agent_server.transports.client import Client, join, send_paced
+from agent_server.transports.server import address, bind, build_hub, load_models, serving
+
+SESSION = "demo"
+PAUSE_NS = 3000 * NS_PER_MS
+"""Between two rounds the person is away, long enough to count as gone."""
+
+
+def demo(
+    file: Annotated[
+        Path | None, typer.Argument(metavar="[FILE]", help="Recording to play; default: built in.")
+    ] = None,
+    port: PortOption = None,
+    rounds: Annotated[
+        int, typer.Option(min=0, help="How often to play it; 0 plays until stopped.")
+    ] = 0,
+    browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
+) -> None:
+    """Serve, play a recorded person in real time, and show what the agent makes of it."""
+    recording = open_recording(file or assets.demo_recording())
+    settings = settings_with(None, None, port)
+    hub = build_hub(settings, load_models())
+    run(_demo(hub, bind(settings), recording, rounds, browser=browser))
+
+
+async def _demo(
+    hub: Hub, listener: socket.socket, recording: Recording, rounds: int, *, browser: bool
+) -> None:
+    console = Console(highlight=False)
+    base = address(listener)
+    page = f"{base}/?session={SESSION}"
+    async with serving(hub, listener) as stopped:
+        console.print(f"The page:  [bold]{page}[/]   (Ctrl+C ends the demo)")
+        console.print(f"Playing:   {recording.metadata.description or recording.path.name}\n")
+        if browser and _has_screen():
+            await asyncio.to_thread(webbrowser.open, page)
+        async with join(base, SESSION, "monitor") as monitor:
+            listening = asyncio.create_task(_listen(monitor, Story(console)))
+            playing = asyncio.create_task(_play(base, recording, rounds))
+            await asyncio.wait((listening, playing, stopped), return_when=asyncio.FIRST_COMPLETED)
+            for task in (listening, playing):
+                if task.done():
+                    task.result()
+                task.cancel()
+
+
+async def _play(url: str, recording: Recording, rounds: int) -> None:
+    """Play the recording again and again as one person who comes and goes."""
+    hello = m.Hello(m.PROTOCOL, "agent-server-demo", __version__)
+    inputs = [
+        event for event in recording.events() if isinstance(event, SkeletonFrame | AffectSample)
+    ]
+    length_ns = inputs[-1].originating_ns + PAUSE_NS
+    async with join(url, SESSION, "sensor", hello=hello) as sensor:
+        played = 0
+        while rounds == 0 or played < rounds:
+            shift_ns = played * length_ns
+            await send_paced(
+                sensor,
+                (
+                    replace(event, originating_ns=event.originating_ns + shift_ns)
+                    for event in inputs
+                ),
+                1.0,
+            )
+            await asyncio.sleep(PAUSE_NS / 1e9)
+            played += 1
+
+
+async def _listen(monitor: Client, story: Story) -> None:
+    async for message in monitor:
+        if isinstance(message, m.DecisionMessage):
+            story.tell(message.decision)
+
+
+def _has_screen() -> bool:
+    """Whether a browser would have somewhere to show the page."""
+    if sys.platform in ("win32", "darwin"):
+        return True
+    return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))

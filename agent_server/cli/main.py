@@ -1,0 +1,56 @@
+"""The command line ``agent-server``. One file a group of commands."""
+
+import logging
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from agent_server import __version__
+from agent_server.cli.bench import bench
+from agent_server.cli.convert import convert
+from agent_server.cli.demo import demo
+from agent_server.cli.replay import replay
+from agent_server.cli.serve import serve
+from agent_server.errors import AgentServerError
+
+app = typer.Typer(
+    name="agent-server",
+    help="Lets a virtual agent read a person's body and face, and react.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+for command in (demo, serve, replay, convert):
+    app.command()(command)
+app.add_typer(bench)
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        print(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
+    ] = False,
+    verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Log more.")] = False,
+) -> None:
+    del version
+    logging.basicConfig(
+        level=logging.INFO if verbose else logging.WARNING,
+        format="%(asctime)s %(levelname)-7s %(name)s: %(message)s",
+    )
+
+
+def main() -> None:
+    """Run a command; a mistake of the user's ends it with a sentence and status 1."""
+    try:
+        app()
+    except AgentServerError as error:
+        Console(stderr=True).print(f"[bold red]error:[/] {error}", highlight=False, soft_wrap=True)
+        raise SystemExit(1) from None

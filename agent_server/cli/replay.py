@@ -1,0 +1,112 @@
+"""``agent-server replay``."""
+
+import asyncio
+import math
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.console import Console
+
+from agent_server import __version__
+from agent_server.cli.options import ConfigOption, JsonOption, run
+from agent_server.cli.story import Story
+from agent_server.config import Settings, load_settings
+from agent_server.domain.affect import AffectSample
+from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.stamp import NS_PER_S
+from agent_server.errors import ConfigError
+from agent_server.protocol import messages as m
+from agent_server.protocol.convert import decision_body
+from agent_server.recording.reader import Recording, open_recording
+from agent_server.service.core import Core
+from agent_server.service.replay import replay as replay_recording
+from agent_server.transports.client import Client, join, send_paced
+from agent_server.transports.server import load_models, load_room
+
+SETTLE_S = 1.0
+"""After the last frame was sent, decisions may still come for this long."""
+
+
+def replay(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="Recording to replay.")],
+    speed: Annotated[
+        str | None,
+        typer.Option(metavar="N|max", help="1 is real time; the default is max, with --to 1."),
+    ] = None,
+    to: Annotated[
+        str | None,
+        typer.Option(metavar="URL", help="Send it to a running server instead."),
+    ] = None,
+    config: ConfigOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Replay a recording and show its decisions; with --json one decision a line."""
+    recording = open_recording(file)
+    show = _print_line if as_json else Story(Console(highlight=False)).tell
+    if to is not None:
+        run(_send(recording, to, _factor(speed or "1"), show))
+        return
+    for decision in _paced(_decide(recording, load_settings(config)), _factor(speed or "max")):
+        show(decision)
+
+
+def _factor(speed: str) -> float:
+    try:
+        factor = math.inf if speed == "max" else float(speed)
+    except ValueError:
+        factor = math.nan
+    if not factor > 0:
+        raise ConfigError(f"--speed is {speed!r}: give a number over 0, or max")
+    return factor
+
+
+def _print_line(decision: m.DecisionBody) -> None:
+    sys.stdout.buffer.write(msgspec.json.encode(decision) + b"\n")
+
+
+def _decide(recording: Recording, settings: Settings) -> Iterator[m.DecisionBody]:
+    models = load_models()
+    core = Core(recording.metadata.session, settings, load_room(settings, models), models.hashes)
+    return map(decision_body, replay_recording(recording, core, models))
+
+
+def _paced(decisions: Iterable[m.DecisionBody], speed: float) -> Iterator[m.DecisionBody]:
+    """Give each decision when its window would end at this speed."""
+    start_s, first_ns = time.monotonic(), None
+    for decision in decisions:
+        first_ns = decision.end_ns if first_ns is None else first_ns
+        due_s = start_s + (decision.end_ns - first_ns) / NS_PER_S / speed
+        time.sleep(max(0.0, due_s - time.monotonic()))
+        yield decision
+
+
+async def _send(recording: Recording, url: str, speed: float, show: Story.Teller) -> None:
+    hello = m.Hello(
+        m.PROTOCOL,
+        "agent-server-replay",
+        __version__,
+        face="none" if recording.metadata.face == "none" else "expected",
+    )
+    session = recording.metadata.session
+    async with (
+        join(url, session, "monitor") as monitor,
+        join(url, session, "sensor", hello=hello) as sensor,
+    ):
+        listener = asyncio.create_task(_listen(monitor, show))
+        inputs = (
+            event for event in recording.events() if isinstance(event, SkeletonFrame | AffectSample)
+        )
+        await send_paced(sensor, inputs, speed)
+        await asyncio.sleep(SETTLE_S)
+        listener.cancel()
+
+
+async def _listen(monitor: Client, show: Story.Teller) -> None:
+    async for message in monitor:
+        if isinstance(message, m.DecisionMessage):
+            show(message.decision)

@@ -1,0 +1,38 @@
+"""``agent-server serve``."""
+
+import json
+import socket
+
+from rich.console import Console
+
+from agent_server.cli.options import (
+    ConfigOption,
+    HostOption,
+    JsonOption,
+    PortOption,
+    run,
+    settings_with,
+)
+from agent_server.service.hub import Hub
+from agent_server.transports.server import address, bind, build_hub, load_models, serving
+
+
+def serve(
+    config: ConfigOption = None,
+    host: HostOption = None,
+    port: PortOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Take sensors, renderers and monitors until stopped."""
+    settings = settings_with(config, host, port)
+    hub = build_hub(settings, load_models())
+    run(_serve(hub, bind(settings), as_json=as_json))
+
+
+async def _serve(hub: Hub, listener: socket.socket, *, as_json: bool) -> None:
+    console = Console(stderr=True)
+    async with serving(hub, listener) as stopped:
+        if as_json:
+            print(json.dumps({"address": address(listener)}), flush=True)
+        console.print(f"agent-server listens on [bold]{address(listener)}[/]; Ctrl+C stops it")
+        await stopped
