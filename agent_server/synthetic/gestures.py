@@ -5,16 +5,14 @@ come to rest at the face, how fast they get there and how far they swing was tun
 recordings of people who cover their eyes, hold their head and wave; see ``docs/synthetic.md``.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 
 import numpy as np
 
 from agent_server.errors import InvalidInput
-from agent_server.synthetic.script import BOTH, Hands, Pen, Script, degrees
+from agent_server.synthetic.script import BOTH, Hands, Pen, Script, Writer, degrees
 from agent_server.synthetic.trajectory import Vector
-
-Writer = Callable[[Pen], None]
 
 
 def _elbow(pen: Pen) -> Vector:

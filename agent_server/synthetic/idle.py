@@ -1,29 +1,34 @@
 """Everything that is not a gesture, above all what looks like one for a moment."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from types import MappingProxyType
 
 import numpy as np
 
 from agent_server.domain.gesture import IDLE
-from agent_server.synthetic.script import Pen, Script, degrees
+from agent_server.errors import InvalidInput
+from agent_server.synthetic.everyday import EVERYDAY
+from agent_server.synthetic.script import Pen, Script, Writer
+from agent_server.synthetic.vigorous import VIGOROUS
 
-Writer = Callable[[Pen], None]
-
-
-def _still(pen: Pen) -> None:
-    end = pen.start_s + pen.uniform(2.5, 5.0)
-    if pen.chance(0.6):
-        look = degrees(pen.rng.normal(0, 8), pen.rng.normal(0, 3), pen.rng.normal(0, 25))
-        pen.turn_and_back("head", pen.start_s, end, look, share=0.25)
-
-
-ACTIONS: Mapping[str, tuple[float, Writer]] = MappingProxyType({"still": (1.0, _still)})
+ACTIONS: Mapping[str, tuple[float, Writer]] = MappingProxyType({**EVERYDAY, **VIGOROUS})
+"""Action -> (how often, what writes it)."""
 
 
 def write_idle(pen: Pen, variant: str | None = None) -> Script:
-    weights = np.array([weight for weight, _ in ACTIONS.values()])
+    """Writes an idle action; without ``variant`` one that fits the posture is drawn.
+
+    Raises:
+        InvalidInput: If there is no such action.
+    """
     if variant is None:
-        variant = str(pen.rng.choice(list(ACTIONS), p=weights / weights.sum()))
+        actions = EVERYDAY if pen.placement.seated and pen.chance(0.85) else ACTIONS
+        weights = np.array([weight for weight, _ in actions.values()])
+        variant = str(pen.rng.choice(list(actions), p=weights / weights.sum()))
+    if variant not in ACTIONS:
+        raise InvalidInput(
+            f"variant is '{variant}', expected one of {', '.join(ACTIONS)} for '{IDLE}'",
+            field="variant",
+        )
     ACTIONS[variant][1](pen)
     return pen.script(IDLE, variant)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from agent_server.domain.arrays import Float64
 from agent_server.synthetic.performance import Frame, Reach
 from agent_server.synthetic.person import Person, Placement
 from agent_server.synthetic.trajectory import ORIGIN, Move, Oscillation, Vector
@@ -165,6 +164,27 @@ class Pen:
             arrival = max(arrival, end)
         return arrival
 
+    def bring(
+        self,
+        hands: Hands,
+        frame: Frame,
+        centre: Vector,
+        spread: Vector | float,
+        *,
+        pole: Vector | None = None,
+        fingers: Vector = ORIGIN,
+        median_s: float = 0.85,
+        start_s: float | None = None,
+    ) -> float:
+        """Brings hands near ``centre``, both to much the same place; returns the arrival."""
+        shared = self.around(centre, spread)
+        elbow = self.around(natural_pole(shared) if pole is None else pole, 0.15)
+
+        def place(_: int) -> tuple[Vector, Vector, Vector]:
+            return self.around(shared, 0.012), self.around(elbow, 0.05), self.around(fingers, 0.1)
+
+        return self.raise_to(hands, frame, place, median_s=median_s, start_s=start_s)
+
     def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.9) -> float:
         """Brings hands back to rest; returns when the last one is there."""
         duration = self.seconds(median_s)
@@ -270,6 +290,14 @@ def degrees(pitch: float, roll: float, yaw: float) -> Vector:
     return float(p), float(r), float(y)
 
 
-def rest_gap(rest: Reach) -> Float64:
-    """Where a hand rests, as an array of three metres."""
-    return np.asarray(rest.point)
+def natural_pole(point: Vector) -> Vector:
+    """Where the elbow points of its own accord when the wrist is at ``point``.
+
+    It hangs below a hand in front of the body and turns outwards as the hand goes up.
+    """
+    high = float(np.clip((point[1] + 0.2) / 0.6, 0.0, 1.0))
+    return 0.45 + 0.6 * high, -0.8 + 0.6 * high, 0.45 - 0.35 * high
+
+
+Writer = Callable[[Pen], None]
+"""Writes the movements of one action with a pen."""
