@@ -9,11 +9,14 @@ from agent_server.bench.stream import recorded_events
 from agent_server.config import Settings
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.motion import BodyLost
+from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.scene.rulebook import Rules
 from agent_server.service.core import Core
 from agent_server.service.worker import Models
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import predict
+
+Event = SkeletonFrame | AffectSample
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +57,7 @@ def measure_decisions(models: Models, rules: Rules, rounds: int) -> DecisionResu
     )
 
 
-def _run(models: Models, rules: Rules, events: list, times: dict[str, list[float]]) -> None:
+def _run(models: Models, rules: Rules, events: list[Event], times: dict[str, list[float]]) -> None:
     core = Core("bench", Settings(), rules, models.hashes)
     for event in events:
         if isinstance(event, AffectSample):

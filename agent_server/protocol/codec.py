@@ -1,6 +1,6 @@
 """The two codings of a message: JSON text and MessagePack bytes."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import msgspec
 
@@ -109,12 +109,12 @@ CODECS: dict[str, Codec] = {codec.subprotocol: codec for codec in (JsonCodec(), 
 
 
 class _Decoder(Protocol):
-    def decode(self, data: Wire, /) -> Message: ...
+    def decode(self, data: Any, /) -> Any: ...
 
 
 def _decoded(decoder: _Decoder, data: Wire) -> Message:
     try:
-        return decoder.decode(data)
+        message: Message = decoder.decode(data)
     except msgspec.ValidationError as error:
         sentence, _, path = str(error).partition(" - at `")
         field = path.rstrip("`").removeprefix("$").removeprefix(".") or None
@@ -122,3 +122,4 @@ def _decoded(decoder: _Decoder, data: Wire) -> Message:
         raise InvalidInput(sentence, field=field, code=code) from None
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise InvalidInput(f"the message cannot be read: {error}", code="malformed") from None
+    return message

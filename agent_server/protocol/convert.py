@@ -9,7 +9,7 @@ import numpy as np
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.arrays import Float32
 from agent_server.domain.command import Ack, AckStatus, Command
-from agent_server.domain.decision import Decision
+from agent_server.domain.decision import Decision, SceneVerdict
 from agent_server.domain.motion import Forecast
 from agent_server.domain.scene import SceneSnapshot
 from agent_server.domain.skeleton import CoreFrame, SkeletonFrame
@@ -166,7 +166,10 @@ def decision_body(decision: Decision) -> m.DecisionBody:
         body_id=decision.body_id,
         models=dict(decision.models),
         quality=m.QualityBody(
-            quality.measured, quality.filled, quality.bone_deviation, list(quality.warnings)
+            round(float(quality.measured), 4),
+            round(float(quality.filled), 4),
+            round(float(quality.bone_deviation), 4),
+            list(quality.warnings),
         ),
         forecast=decision.forecast,
         forecast_failure=decision.forecast_failure,
@@ -175,11 +178,16 @@ def decision_body(decision: Decision) -> m.DecisionBody:
         gate=m.GateBody(
             gate.mode, gate.is_open, gate.reason, gate.valence, gate.arousal, gate.age_ms
         ),
-        scene=scene
-        and m.SceneBody(scene.mode, scene.rule, scene.precondition, scene.met, scene.reason),
+        scene=None if scene is None else _scene_body(scene),
         outcome=decision.outcome.value,
         reason=decision.reason,
-        command=decision.command and command_body(decision.command),
+        command=None if decision.command is None else command_body(decision.command),
+    )
+
+
+def _scene_body(verdict: SceneVerdict) -> m.SceneBody:
+    return m.SceneBody(
+        verdict.mode, verdict.rule, verdict.precondition, verdict.met, verdict.reason
     )
 
 

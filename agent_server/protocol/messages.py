@@ -38,13 +38,13 @@ class Message(msgspec.Struct, frozen=True, omit_defaults=True, tag_field="type")
 # --------------------------------------------------------------------------- both ways
 
 
-class Ping(Message, tag="ping"):
+class Ping(Message, frozen=True, tag="ping"):
     """Asks for a pong with the same ``sent_ns``."""
 
     sent_ns: Nanoseconds
 
 
-class Pong(Message, tag="pong"):
+class Pong(Message, frozen=True, tag="pong"):
     """Answers a ping. ``time_ns`` is the answering side's own monotonic clock."""
 
     sent_ns: Nanoseconds
@@ -54,7 +54,7 @@ class Pong(Message, tag="pong"):
 # --------------------------------------------------------------------------- client to server
 
 
-class Hello(Message, tag="hello"):
+class Hello(Message, frozen=True, tag="hello"):
     """First message on every connection.
 
     ``face`` is what a sensor knows of the face: ``expected`` when affect follows, ``none``
@@ -73,7 +73,7 @@ class Hello(Message, tag="hello"):
     time: Annotated[str, Meta(max_length=64)] | None = None
 
 
-class Skeleton(Message, tag="skeleton"):
+class Skeleton(Message, frozen=True, tag="skeleton"):
     """One body at one instant (JSON coding)."""
 
     originating_ns: Nanoseconds
@@ -82,7 +82,7 @@ class Skeleton(Message, tag="skeleton"):
     joints: Annotated[list[JointSample], Meta(max_length=64)]
 
 
-class PackedSkeleton(Message, tag="skeleton"):
+class PackedSkeleton(Message, frozen=True, tag="skeleton"):
     """One body at one instant (MessagePack coding).
 
     ``joints`` holds x, y, z, confidence of every joint as little-endian float32.
@@ -94,7 +94,7 @@ class PackedSkeleton(Message, tag="skeleton"):
     joints: Annotated[bytes, Meta(max_length=64 * 16)]
 
 
-class Affect(Message, tag="affect"):
+class Affect(Message, frozen=True, tag="affect"):
     """One estimate of the person's affect."""
 
     originating_ns: Nanoseconds
@@ -102,7 +102,7 @@ class Affect(Message, tag="affect"):
     arousal: Level
 
 
-class AckMessage(Message, tag="ack"):
+class AckMessage(Message, frozen=True, tag="ack"):
     """A renderer's word on a command."""
 
     command_id: Annotated[str, Meta(min_length=1, max_length=160)]
@@ -111,7 +111,7 @@ class AckMessage(Message, tag="ack"):
     reason: Text | None = None
 
 
-class SceneEvent(Message, tag="scene_event"):
+class SceneEvent(Message, frozen=True, tag="scene_event"):
     """Somebody changed an object of the room by hand."""
 
     object: Name
@@ -146,7 +146,7 @@ class Limits(msgspec.Struct, frozen=True):
     max_errors: int
 
 
-class SceneState(Message, tag="scene"):
+class SceneState(Message, frozen=True, tag="scene"):
     """The room: the agent's mode, each object's state, the command being carried out."""
 
     mode: str
@@ -154,7 +154,7 @@ class SceneState(Message, tag="scene"):
     command_id: str | None = None
 
 
-class Welcome(Message, tag="welcome"):
+class Welcome(Message, frozen=True, tag="welcome"):
     """Answers hello when the client may stay."""
 
     protocol: str
@@ -172,7 +172,7 @@ class Welcome(Message, tag="welcome"):
     scene: SceneState
 
 
-class ErrorMessage(Message, tag="error"):
+class ErrorMessage(Message, frozen=True, tag="error"):
     """Something the client sent was refused. ``fatal`` announces that the connection closes."""
 
     code: str
@@ -189,7 +189,7 @@ class StepMessage(msgspec.Struct, frozen=True, omit_defaults=True):
     target: str | None = None
 
 
-class CommandMessage(Message, tag="command"):
+class CommandMessage(Message, frozen=True, tag="command"):
     """An order to the renderer. The same ``id`` is carried out once."""
 
     id: str
@@ -205,7 +205,7 @@ class CommandMessage(Message, tag="command"):
     preempts: str | None = None
 
 
-class PoseMessage(Message, tag="pose"):
+class PoseMessage(Message, frozen=True, tag="pose"):
     """Telemetry: the nine core joints as observed, at 25 Hz; each is x, y, z, confidence."""
 
     originating_ns: int
@@ -213,7 +213,7 @@ class PoseMessage(Message, tag="pose"):
     joints: list[JointSample]
 
 
-class ForecastMessage(Message, tag="forecast"):
+class ForecastMessage(Message, frozen=True, tag="forecast"):
     """Telemetry: the expected motion after a window, 50 frames of nine points at 25 Hz."""
 
     window: int
@@ -222,7 +222,7 @@ class ForecastMessage(Message, tag="forecast"):
     positions: list[list[Point]]
 
 
-class AffectTelemetry(Message, tag="affect_state"):
+class AffectTelemetry(Message, frozen=True, tag="affect_state"):
     """Telemetry: the affect as it came in."""
 
     originating_ns: int
@@ -230,7 +230,7 @@ class AffectTelemetry(Message, tag="affect_state"):
     arousal: float
 
 
-class AckTelemetry(Message, tag="ack_state"):
+class AckTelemetry(Message, frozen=True, tag="ack_state"):
     """Telemetry: what the renderer said of a command."""
 
     command_id: str
@@ -317,14 +317,14 @@ class Timing(msgspec.Struct, frozen=True):
     total_ms: float
 
 
-class DecisionMessage(Message, tag="decision"):
+class DecisionMessage(Message, frozen=True, tag="decision"):
     """Telemetry: one decision and its timing."""
 
     decision: DecisionBody
     timing: Timing
 
 
-class StatsMessage(Message, tag="stats"):
+class StatsMessage(Message, frozen=True, tag="stats"):
     """Telemetry: the session's counters since its start."""
 
     frames: int

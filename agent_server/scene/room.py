@@ -210,8 +210,7 @@ class Room:
     def lose_body(self, lost: BodyLost) -> tuple[Command, ...]:
         """The person has left: attention ends, at once or when the running reaction is over."""
         due = self.advance(lost.stamp_ns)
-        if self._mode is not AgentMode.WORKING:
-            self._lost_ns = self._now_ns
+        self._lost_ns = self._now_ns
         return (*due, *self.advance(self._now_ns))
 
     def attach_renderer(self, now_ns: int) -> tuple[Command, ...]:

@@ -116,6 +116,7 @@ class Rules:
 
     Attributes:
         attention_s: Time from the last gesture to the end of attention, in seconds.
+        ungated: Gestures that need no uncomfortable face.
         objects: Everything in the room, by name.
         reactions: Everything that the agent can do, by name.
         rules: The rules of each gesture in the order of the file; the first that holds applies.
@@ -123,7 +124,12 @@ class Rules:
     """
 
     attention_s: float
+    ungated: frozenset[str]
     objects: Mapping[str, SceneObject]
     reactions: Mapping[str, Reaction]
     rules: Mapping[str, tuple[Rule, ...]]
     idle: Mapping[AgentMode, tuple[IdleBehaviour, ...]]
+
+    def is_gated(self, gesture: str) -> bool:
+        """Whether the affect gate must be open for this gesture."""
+        return gesture not in self.ungated

@@ -74,7 +74,7 @@ def parse_rules(text: str, known_gestures: Collection[str] = GESTURES, *, name: 
     """
     root = Source(name, text).parse()
     root.only("settings", "objects", "steps", "reactions", "rules", "idle")
-    settings = root.table("settings").only("attention_s")
+    settings = root.table("settings").only("attention_s", "ungated")
     objects = {key: _object(key, table) for key, table in root.named_tables("objects").items()}
     kinds = {key: _step_kind(key, table) for key, table in root.named_tables("steps").items()}
     room = _Room(objects, kinds)
@@ -89,6 +89,7 @@ def parse_rules(text: str, known_gestures: Collection[str] = GESTURES, *, name: 
         )
     return Rules(
         attention_s=settings.positive("attention_s"),
+        ungated=_known_texts(settings, "ungated", "gesture", _gestures(known_gestures)),
         objects=objects,
         reactions=reactions,
         rules=_rules(root, known_gestures, reactions, room),
@@ -184,7 +185,7 @@ def _reaction(name: str, table: Table, room: _Room) -> Reaction:
 def _rules(
     root: Table, known_gestures: Collection[str], reactions: Mapping[str, Reaction], room: _Room
 ) -> dict[str, tuple[Rule, ...]]:
-    gestures = [gesture for gesture in known_gestures if gesture != IDLE]
+    gestures = _gestures(known_gestures)
     triggered = reactions.keys() - {RESUME_WORK}
     rules: dict[str, tuple[Rule, ...]] = {}
     for table in root.tables("rules"):
@@ -198,7 +199,7 @@ def _rules(
             gesture=gesture,
             when=room.conditions(table.table("when", required=False)),
             reaction=reactions[_known(table, "reaction", "reaction", triggered)],
-            preempts=_preempts(table, triggered),
+            preempts=_known_texts(table, "preempts", "reaction", triggered),
         )
         earlier = rules.get(gesture, ())
         for other in earlier:
@@ -213,16 +214,18 @@ def _rules(
     return rules
 
 
-def _preempts(table: Table, reactions: Collection[str]) -> frozenset[str]:
-    names = table.texts("preempts")
+def _gestures(known_gestures: Collection[str]) -> list[str]:
+    """The gestures that a rule file may name."""
+    return [gesture for gesture in known_gestures if gesture != IDLE]
+
+
+def _known_texts(table: Table, key: str, kind: str, known: Collection[str]) -> frozenset[str]:
+    """The texts listed at ``key``, after refusing any that is not ``known``."""
+    names = table.texts(key)
     for index, name in enumerate(names):
-        if name not in reactions:
-            raise table.element_error(
-                "preempts",
-                index,
-                f"unknown reaction '{name}'",
-                suggest(name, "reactions", reactions),
-            )
+        if name not in known:
+            fix = suggest(name, f"{kind}s", known)
+            raise table.element_error(key, index, f"unknown {kind} '{name}'", fix)
     return frozenset(names)
 
 
