@@ -262,6 +262,14 @@ def test_a_return_to_work_is_cut_short_by_any_reaction(new_stage):
     assert considered.verdict.reason == "cuts short resume_work"
 
 
+def test_a_return_to_work_is_cut_short_whatever_its_priority(new_stage):
+    text = PREEMPTING.replace("priority = 0", "priority = 1000")
+    stage = new_stage(parse_rules(text, ["cold", "loud"], name="test"))
+    stage.gesture("loud", 1)
+    assert stage.at(11).command_id == "s/c2"
+    assert stage.gesture("loud", 12).command.preempts == "s/c2"
+
+
 def test_a_reaction_that_was_cut_short_has_no_effect(new_stage):
     text = PREEMPTING.replace('["jacket"]', '["close"]')
     stage = new_stage(parse_rules(text, ["cold", "loud"], name="test"))

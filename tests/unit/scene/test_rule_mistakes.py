@@ -102,6 +102,18 @@ MISTAKES = {
         27,
         "rules[0].preempts[0]: unknown reaction 'lite'; did you mean 'light'?",
     ),
+    "resume_work in preempts": (
+        '["light"]',
+        '["resume_work"]',
+        27,
+        "rules[0].preempts[0]: unknown reaction 'resume_work'; known reactions: light",
+    ),
+    "no object with states": (
+        'lamp = { states = ["on", "off"], initial = "off" }',
+        "lamp = {}",
+        14,
+        "reactions.light.effects.lamp: 'lamp' has no states; known objects with states: none",
+    ),
     "resume_work as a reaction": (
         '"light"\npre',
         '"resume_work"\npre',
@@ -386,6 +398,6 @@ MISTAKES = {
 def test_a_mistake_is_refused_with_its_line_and_the_way_out(old, new, line, message):
     assert old in SMALL
     with pytest.raises(RuleError) as refused:
-        parse_rules(SMALL.replace(old, new, 1), ["point", "shrug"], name="my.toml")
+        parse_rules(SMALL.replace(old, new, 1), ["point", "shrug", "idle"], name="my.toml")
     assert str(refused.value).startswith(f"my.toml:{line}: ")
     assert message in str(refused.value)

@@ -38,7 +38,7 @@ many = "lines"
 [not.a.header]
 it ends in a quote""""
 after = \'\'\'
-x = 1\'\'\'
+x = 1\'\'\'\'
 
   [[rules.parts]]
   name = 1979-05-27 07:32:00
