@@ -67,7 +67,7 @@ class Controls:
         head_points: Shape (2, T, 3), part tied to the head.
         pelvis_points: Shape (2, T, 3), part tied to the pelvis.
         weights: Shape (2, T, 4), share of the four; each row sums to 1.
-        poles: Shape (2, T, 3), where the elbows point, in the chest frame.
+        swivels: Shape (2, T), radians, see :func:`elbow_direction`.
         hands: Shape (2, T, 3), where the fingers point beside the forearm's direction.
         feet: Shape (2, T, 3), metres outwards, up and back of where each foot rests.
     """
@@ -80,7 +80,7 @@ class Controls:
     head_points: Float64
     pelvis_points: Float64
     weights: Float64
-    poles: Float64
+    swivels: Float64
     hands: Float64
     feet: Float64
 
@@ -136,10 +136,29 @@ def _unit(vectors: Float64) -> Float64:
     return np.asarray(vectors / np.maximum(length, 1e-9))
 
 
-def _soft_clip(values: Float64, low: float, high: float, softness: float) -> Float64:
-    """Clips with a continuous slope: identity well inside, never outside."""
-    up = softness * np.logaddexp(0.0, (values - low) / softness) + low
-    return np.asarray(np.minimum(high - softness * np.logaddexp(0.0, (high - up) / softness), high))
+_AHEAD = np.array([0.30, -0.10, -0.95]) / np.linalg.norm([0.30, -0.10, -0.95])
+_DOWNWARDS = np.array([0.0, _AHEAD[2], -_AHEAD[1]]) / np.hypot(_AHEAD[1], _AHEAD[2])
+_OUTWARDS = np.cross(_DOWNWARDS, _AHEAD)
+
+
+def elbow_direction(line: Float64, swivel_rad: Float64) -> Float64:
+    """Where the elbow points, at right angles to the line from shoulder to wrist.
+
+    The direction is fixed for an arm that points ahead and carried to every other direction by
+    the smallest rotation. Such a field has one singular direction only, which is put where no
+    arm can reach: behind the shoulder and inwards. (A constant pole vector has two, within reach.)
+
+    Args:
+        line: Shape (T, 3), outwards, up and back, of any length.
+        swivel_rad: Shape (T,), 0 hangs down, a quarter turn points outwards.
+
+    Returns:
+        Shape (T, 3), outwards, up and back, unit length.
+    """
+    along = _unit(line)
+    ahead = np.cos(swivel_rad)[:, None] * _DOWNWARDS + np.sin(swivel_rad)[:, None] * _OUTWARDS
+    lift = (along * ahead).sum(axis=1) / np.maximum(1.0 + along @ _AHEAD, 0.02)
+    return _unit(ahead - lift[:, None] * (_AHEAD + along))
 
 
 def two_bone(
@@ -223,7 +242,7 @@ def move_body(
     level = 0.7 * placement.slouch_rad
     head = chest @ rotation(head_pitch - level, head_roll, head_yaw)
 
-    standing = 0.985 * (person.thigh_m + person.shank_m) + 0.045 * scale
+    standing = 0.993 * (person.thigh_m + person.shank_m) + 0.045 * scale
     rest_height = placement.seat_m if placement.seated else standing
     pelvis = np.array([placement.lateral_m, rest_height, placement.distance_m]) + turn(
         ground, controls.pelvis
@@ -255,7 +274,8 @@ def move_body(
         )
         wrist = _clear_of_body(wrist, (centre, base), (head, chest), person)
         shoulder = base + turn(chest, _shoulder(person, sign, unturn(chest, wrist - base)))
-        pole = turn(chest, controls.poles[side] * mirror)
+        line = unturn(chest, wrist - shoulder) * mirror
+        pole = turn(chest, elbow_direction(line, controls.swivels[side]) * mirror)
         elbow, wrist = two_bone(shoulder, wrist, pole, person.upper_arm_m, person.forearm_m)
         first = BodyJoint.RIGHT_SHOULDER if side else BodyJoint.LEFT_SHOULDER
         joints[:, first], joints[:, first + 1], joints[:, first + 2] = shoulder, elbow, wrist

@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees, natural_pole
+from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees
 from agent_server.synthetic.trajectory import ORIGIN, Vector
 
 
@@ -62,15 +62,13 @@ def _touch(
     place: Vector,
     spread: Vector | float,
     hold: tuple[float, float],
+    swivel: tuple[float, float] = (45.0, 20.0),
     *,
     rub: float = 0.0,
-    pole: Vector | None = None,
-    fingers: Vector = (-0.6, 0.5, 0.2),
     pitch: float = 2.0,
 ) -> None:
     """Hands go to the head, stay or scratch there, and come back."""
-    elbow = pen.around((0.7, -0.6, -0.2), (0.2, 0.3, 0.2)) if pole is None else pole
-    arrival = pen.bring(hands, "head", place, spread, pole=elbow, fingers=fingers)
+    arrival = pen.bring(hands, "head", place, spread, swivel, fingers=(-0.6, 0.5, 0.2))
     release = arrival + pen.uniform(*hold)
     if rub:
         for side in hands:
@@ -83,7 +81,8 @@ def _touch(
 
 
 def _scratch_head(pen: Pen) -> None:
-    _touch(pen, (pen.main,), (0.10, 0.11, 0.0), (0.03, 0.04, 0.05), (0.5, 2.0), rub=0.015)
+    place, spread = (0.10, 0.11, 0.0), (0.03, 0.04, 0.05)
+    _touch(pen, (pen.main,), place, spread, (0.5, 2.0), (80.0, 18.0), rub=0.015)
 
 
 def _scratch_cheek(pen: Pen) -> None:
@@ -93,10 +92,10 @@ def _scratch_cheek(pen: Pen) -> None:
 def _hair(pen: Pen) -> None:
     """A hand runs through the hair, from the forehead back."""
     side = pen.main
-    arrival = pen.bring((side,), "head", (0.09, 0.07, -0.13), 0.025, fingers=(-0.8, 0.5, 0.3))
+    arrival = pen.bring((side,), "head", (0.09, 0.07, -0.13), 0.025, (72.0, 14.0))
     back = pen.around((0.11, 0.10, 0.05), 0.03)
     stroke = pen.seconds(0.6)
-    end = pen.reach(side, arrival, stroke, "head", back, (0.9, 0.2, -0.2), bow=(0, 0.04, 0))
+    end = pen.reach(side, arrival, stroke, "head", back, 90.0, bow=(0.06, 0.05, 0.0))
     pen.lower((side,), end + pen.uniform(0, 0.5))
 
 
@@ -105,57 +104,55 @@ def _glasses(pen: Pen) -> None:
 
 
 def _neck_rub(pen: Pen) -> None:
-    _touch(pen, (pen.main,), (0.09, -0.10, 0.07), (0.02, 0.03, 0.02), (0.8, 2.5), rub=0.01)
+    place, spread = (0.09, -0.09, 0.07), (0.02, 0.03, 0.02)
+    _touch(pen, (pen.main,), place, spread, (0.8, 2.5), (95.0, 14.0), rub=0.01)
 
 
 def _chin(pen: Pen) -> None:
     place, spread = (0.05, -0.265, -0.115), (0.02, 0.02, 0.02)
-    _touch(pen, (pen.main,), place, spread, (1.0, 4.0), pole=(0.5, -0.8, 0.0), pitch=6)
+    _touch(pen, (pen.main,), place, spread, (1.0, 4.0), (30.0, 12.0), pitch=6)
 
 
 def _phone(pen: Pen) -> None:
     place, spread = (0.145, -0.14, -0.05), (0.02, 0.03, 0.03)
-    _touch(pen, (pen.main,), place, spread, (2.0, 5.0), pole=(0.7, -0.7, -0.1))
+    _touch(pen, (pen.main,), place, spread, (2.0, 5.0), (50.0, 18.0))
 
 
 def _drink(pen: Pen) -> None:
     side = pen.main
     pick = pen.around((0.12, -0.36, -0.32), 0.05)
-    at = pen.reach(side, pen.start_s, pen.seconds(0.8), "chest", pick, natural_pole(pick))
+    at = pen.reach(side, pen.start_s, pen.seconds(0.8), "chest", pick)
     lips = pen.around((0.07, -0.20, -0.235), (0.02, 0.02, 0.02))
     at += pen.uniform(0.0, 0.5)
-    pole = pen.around((0.8, -0.5, -0.1), 0.15)
-    arrival = pen.reach(side, at, pen.seconds(0.9), "head", lips, pole, hand=(-0.8, 0.3, 0))
+    arrival = pen.reach(side, at, pen.seconds(0.9), "head", lips, pen.uniform(30, 70))
     drunk = arrival + pen.uniform(0.6, 2.0)
     tilt = degrees(-pen.uniform(5, 20), 0, 0)
     pen.turn_and_back("head", at + 0.4, drunk + 0.4, tilt)
-    down = pen.reach(side, drunk, pen.seconds(0.8), "chest", pick, natural_pole(pick))
+    down = pen.reach(side, drunk, pen.seconds(0.8), "chest", pick)
     pen.lower((side,), down + pen.uniform(0, 0.4))
 
 
 def _fold(pen: Pen) -> None:
     """Folds the arms and keeps them still."""
     over = pen.main
-    shared = pen.around((-0.05, -0.28, -0.19), (0.03, 0.03, 0.02))
-
-    def place(side: int) -> tuple[Vector, Vector, Vector]:
-        x, y, z = pen.around(shared, 0.012)
-        return (x, y, z - (0.045 if side == over else 0.0)), (0.8, -0.6, 0.0), (-0.9, 0.2, 0.0)
-
-    arrival = pen.raise_to(BOTH, "chest", place, median_s=0.9)
+    apart = {over: (0.0, 0.0, -0.045)}
+    place, spread = (-0.05, -0.28, -0.19), (0.03, 0.03, 0.02)
+    arrival = pen.bring(
+        BOTH, "chest", place, spread, (42.0, 10.0), fingers=(-0.9, 0.2, 0.0), apart=apart
+    )
     pen.lower(BOTH, arrival + pen.uniform(1.0, 5.0))
 
 
 def _hips(pen: Pen) -> None:
     hands = BOTH if pen.chance(0.7) else (pen.main,)
-    place, pole = (0.205, 0.17, -0.05), (0.9, 0.0, 0.5)
-    arrival = pen.bring(hands, "pelvis", place, 0.02, pole=pole, fingers=(-0.6, -0.3, -0.5))
+    place, fingers = (0.205, 0.17, -0.05), (-0.6, -0.3, -0.5)
+    arrival = pen.bring(hands, "pelvis", place, 0.02, (80.0, 10.0), fingers=fingers)
     pen.lower(hands, arrival + pen.uniform(0.8, 4.0))
 
 
 def _stretch(pen: Pen) -> None:
     place, spread = (0.22, 0.46, 0.0), (0.14, 0.08, 0.06)
-    arrival = pen.bring(BOTH, "chest", place, spread, pole=(1.0, -0.1, 0.3), median_s=1.2)
+    arrival = pen.bring(BOTH, "chest", place, spread, (50.0, 15.0), median_s=1.2)
     release = arrival + pen.uniform(0.4, 2.0)
     end = pen.lower(BOTH, release, median_s=1.2)
     pen.turn_and_back("trunk", pen.start_s, end, degrees(-pen.uniform(2, 10), 0, 0))
@@ -170,7 +167,7 @@ def _talk(pen: Pen) -> None:
         side = hands[int(pen.rng.integers(len(hands)))]
         for moved in hands if pen.chance(0.6) else (side,):
             spot = pen.around((0.18, -0.27, -0.30), (0.09, 0.10, 0.07))
-            pen.reach(moved, at, beat, "chest", spot, natural_pole(spot))
+            pen.reach(moved, at, beat, "chest", spot)
         at += beat + pen.uniform(-0.1, 0.5)
     pen.sway("head", pen.start_s, at, degrees(4, 2, 5), pen.uniform(0.5, 1.2))
     pen.turn("head", at, 0.2, ORIGIN)
@@ -178,8 +175,8 @@ def _talk(pen: Pen) -> None:
 
 
 def _point(pen: Pen) -> None:
-    target = pen.around((0.20, -0.02, -0.50), (0.22, 0.14, 0.12))
-    arrival = pen.bring((pen.main,), "chest", target, 0.02, fingers=ORIGIN, median_s=0.7)
+    target = pen.around((0.24, -0.02, -0.52), (0.24, 0.14, 0.10))
+    arrival = pen.bring((pen.main,), "chest", target, 0.02, median_s=0.7)
     side_turn = 15.0 * (1 if pen.main == 0 else -1) * (target[0] > 0.3)
     end = pen.lower((pen.main,), arrival + pen.uniform(0.3, 2.0))
     pen.turn_and_back("head", pen.start_s, end, degrees(0, 0, side_turn + pen.rng.normal(0, 8)))
@@ -193,7 +190,7 @@ def _grasp(pen: Pen) -> None:
     end = at
     for target in (first, pen.around(first, 0.12)):
         for side in hands:
-            arrival = pen.reach(side, at, pen.seconds(0.8), "chest", target, natural_pole(target))
+            arrival = pen.reach(side, at, pen.seconds(0.8), "chest", target)
             end = max(end, arrival)
         at = end + pen.uniform(0.1, 0.8)
     end = pen.lower(hands, at)
@@ -238,7 +235,7 @@ def _text(pen: Pen) -> None:
 def _watch(pen: Pen) -> None:
     side = 1 - pen.main
     spot = pen.around((-0.02, -0.22, -0.30), 0.04)
-    arrival = pen.bring((side,), "chest", spot, 0.02, pole=(0.9, -0.4, 0.2), median_s=0.7)
+    arrival = pen.bring((side,), "chest", spot, 0.02, median_s=0.7)
     end = pen.lower((side,), arrival + pen.uniform(0.4, 1.5))
     pen.turn_and_back("head", pen.start_s, end, degrees(20, 0, 8 if side == 0 else -8))
 
@@ -265,7 +262,7 @@ def _change_rest(pen: Pen) -> None:
     hands = BOTH if pen.chance(0.6) else (pen.main,)
     spots = ((0.05, 0.10, -0.21), (0.13, 0.12, -0.26), (0.21, 0.05, -0.05), (0.06, 0.09, 0.17))
     spot = spots[int(pen.rng.integers(3 if pen.placement.seated else 4))]
-    arrival = pen.bring(hands, "pelvis", spot, 0.02, pole=(0.7, -0.2, 0.6), median_s=1.0)
+    arrival = pen.bring(hands, "pelvis", spot, 0.02, median_s=1.0)
     pen.lower(hands, arrival + pen.uniform(1.0, 4.0), median_s=1.0)
 
 
@@ -286,7 +283,7 @@ def _sit_or_stand(pen: Pen) -> None:
         knees = pen.around((0.14, 0.12, -0.28), 0.03)
         start, end = pen.start_s, pen.start_s + change
         for side in BOTH:
-            pen.reach(side, start, 0.7 * change, "pelvis", knees, (0.6, -0.3, 0.7))
+            pen.reach(side, start, 0.7 * change, "pelvis", knees)
         pen.lower(BOTH, end)
 
 

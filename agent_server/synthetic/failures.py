@@ -1,6 +1,6 @@
 """How trackers fail: wrists at the head, before the trunk or at each other get lost and jump."""
 
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,17 +14,21 @@ ARMS = (
 )
 
 
-class Failing(Protocol):
-    """What failures need to know of a sensor; see ``sensors.Sensor``."""
+@dataclass(frozen=True, slots=True)
+class Weakness:
+    """How a sensor fails on joints that are hard to see.
 
-    @property
-    def failures_hz(self) -> float: ...
-    @property
-    def jump_m(self) -> tuple[float, float]: ...
-    @property
-    def inferred(self) -> float: ...
-    @property
-    def untracked_hz(self) -> float: ...
+    Attributes:
+        failures_hz: Failures of a wrist a second while it is fully exposed to them.
+        jump_m: Size of the jumps in a failure, smallest and largest.
+        inferred: Share of failures that the sensor owns up to with a lower confidence.
+        untracked_hz: How often a second an exposed wrist is given up.
+    """
+
+    failures_hz: float
+    jump_m: tuple[float, float]
+    inferred: float
+    untracked_hz: float
 
 
 def exposure(core: Float64, body: BodyMotion) -> Float64:
@@ -72,7 +76,7 @@ def fail(
     confidence: Float64,
     exposed: Float64,
     times_s: Float64,
-    sensor: Failing,
+    weakness: Weakness,
     rng: np.random.Generator,
 ) -> None:
     """Writes failures of both arms into ``seen`` (T, 9, 3) and ``confidence`` (T, 9).
@@ -81,19 +85,18 @@ def fail(
     to 1.5 s and do one of three things: the wrist jumps and takes part of the elbow along, the
     wrist is pulled to the other one, or the joint is only inferred.
     """
-    duration = float(times_s[-1] - times_s[0])
     for side, (elbow, wrist) in enumerate(ARMS):
         other = ARMS[1 - side][1]
-        for begin, stop in _episodes(exposed[:, wrist], times_s, sensor.failures_hz, 0.22, rng):
+        for begin, stop in _episodes(exposed[:, wrist], times_s, weakness.failures_hz, 0.22, rng):
             span = slice(begin, stop)
-            owned = rng.random() < sensor.inferred
+            owned = rng.random() < weakness.inferred
             kind = rng.random()
             near = np.linalg.norm(seen[begin, wrist] - seen[begin, other]) < 0.25
             if kind < 0.25 and near:
                 share = rng.uniform(0.4, 0.9)
                 seen[span, wrist] += share * (seen[span, other] - seen[span, wrist])
             elif kind < 0.75:
-                jump = _jump(seen[begin, wrist] - seen[begin, elbow], sensor.jump_m, rng)
+                jump = _jump(seen[begin, wrist] - seen[begin, elbow], weakness.jump_m, rng)
                 shake = rng.standard_normal((stop - begin, 3)) * 0.15 * np.linalg.norm(jump)
                 seen[span, wrist] += jump + shake
                 seen[span, elbow] += rng.uniform(0.1, 0.5) * jump
@@ -101,13 +104,11 @@ def fail(
                 confidence[span, wrist] = 0.5
                 if rng.random() < 0.3:
                     confidence[span, elbow] = 0.5
-        if duration > 0:
-            for begin, stop in _episodes(
-                exposed[:, wrist] + 0.15, times_s, sensor.untracked_hz, 0.2, rng
-            ):
-                confidence[begin:stop, wrist] = 0.0
+        given_up = exposed[:, wrist] + 0.15
+        for begin, stop in _episodes(given_up, times_s, weakness.untracked_hz, 0.2, rng):
+            confidence[begin:stop, wrist] = 0.0
         hidden = exposed[:, elbow] > 0.8
-        if hidden.any() and rng.random() < sensor.inferred:
+        if hidden.any() and rng.random() < weakness.inferred:
             confidence[hidden, elbow] = np.minimum(confidence[hidden, elbow], 0.5)
 
 

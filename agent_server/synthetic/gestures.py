@@ -1,8 +1,9 @@
 """The six gestures of the thesis's Table 5.1, in all the ways in which people do them.
 
 Points are written outwards, up and back, in metres for the reference stature. Where wrists
-come to rest at the face, how fast they get there and how far they swing was tuned on Kinect
-recordings of people who cover their eyes, hold their head and wave; see ``docs/synthetic.md``.
+come to rest at the face, how fast they get there, where elbows point and how far hands swing
+was tuned on Kinect recordings of people who cover their eyes, hold their head and wave; see
+``docs/synthetic.md``.
 """
 
 from collections.abc import Mapping
@@ -12,13 +13,11 @@ import numpy as np
 
 from agent_server.errors import InvalidInput
 from agent_server.synthetic.script import BOTH, Hands, Pen, Script, Writer, degrees
-from agent_server.synthetic.trajectory import Vector
+from agent_server.synthetic.trajectory import ORIGIN, Vector
 
-
-def _elbow(pen: Pen) -> Vector:
-    """Where elbows point while hands are at the face: from hanging to raised sideways."""
-    raised = pen.uniform(-0.85, 0.25)
-    return pen.around((0.75, raised, -0.35), (0.12, 0.1, 0.25))
+Swivel = tuple[float, float]
+_FORWARD: Vector = (0.06, 0.0, -0.13)
+_SIDEWAYS: Vector = (0.17, 0.0, -0.08)
 
 
 def _flinch(pen: Pen, start_s: float, stop_s: float, pitch: float, spread: float = 6) -> None:
@@ -37,21 +36,23 @@ def _fidget(pen: Pen, hands: Hands, start_s: float, stop_s: float) -> None:
     """Hands that hold something are never quite still."""
     for side in hands:
         size = pen.person.liveliness * pen.uniform(0.001, 0.006)
-        along = pen.around((0.0, 0.0, 0.0), size)
+        along = pen.around(ORIGIN, size)
         pen.swing(side, start_s, stop_s, along, pen.uniform(0.5, 1.8), ramp_s=0.4)
 
 
 def _at_face(
-    pen: Pen, hands: Hands, centre: Vector, spread: Vector, fingers: Vector, pitch: float
+    pen: Pen,
+    hands: Hands,
+    centre: Vector,
+    spread: Vector,
+    swivel: Swivel,
+    *,
+    fingers: Vector,
+    pitch: float,
+    bow: Vector = _FORWARD,
 ) -> None:
     """Raises hands to the face, holds them there, lowers them."""
-    shared = pen.around(centre, spread)
-    pole = _elbow(pen)
-
-    def place(side: int) -> tuple[Vector, Vector, Vector]:
-        return pen.around(shared, 0.012), pen.around(pole, 0.06), pen.around(fingers, 0.15)
-
-    arrival = pen.raise_to(hands, "head", place)
+    arrival = pen.bring(hands, "head", centre, spread, swivel, fingers=fingers, bow=bow)
     release = arrival + pen.hold()
     _fidget(pen, hands, arrival - 0.2, release)
     end = pen.lower(hands, release)
@@ -62,90 +63,97 @@ def _at_face(
 
 
 def _eyes_both(pen: Pen) -> None:
-    _at_face(pen, BOTH, (0.115, -0.10, -0.145), (0.028, 0.035, 0.025), (-0.7, 0.6, 0.3), 8)
+    place, spread = (0.115, -0.10, -0.14), (0.027, 0.034, 0.022)
+    swivel = (80.0, 14.0) if pen.chance(0.10) else (32.0, 9.0)
+    _at_face(pen, BOTH, place, spread, swivel, fingers=(-0.7, 0.6, 0.3), pitch=6)
 
 
 def _eyes_one(pen: Pen) -> None:
-    hands = (pen.main,)
-    _at_face(pen, hands, (0.09, -0.08, -0.15), (0.04, 0.035, 0.025), (-0.9, 0.4, 0.2), 8)
+    place, spread = (0.09, -0.08, -0.145), (0.04, 0.034, 0.024)
+    swivel = (40.0, 18.0)
+    _at_face(pen, (pen.main,), place, spread, swivel, fingers=(-0.9, 0.4, 0.2), pitch=6)
 
 
 def _visor(pen: Pen) -> None:
-    hands = (pen.main,)
-    _at_face(pen, hands, (0.14, 0.015, -0.14), (0.035, 0.03, 0.035), (-1.0, 0.3, 0.0), 4)
+    place, spread = (0.14, 0.015, -0.135), (0.035, 0.03, 0.035)
+    swivel = (62.0, 20.0)
+    _at_face(pen, (pen.main,), place, spread, swivel, fingers=(-1.0, 0.3, 0.0), pitch=3)
 
 
 def _visor_both(pen: Pen) -> None:
-    _at_face(pen, BOTH, (0.135, 0.01, -0.14), (0.03, 0.03, 0.03), (-1.0, 0.4, 0.0), 4)
+    place, spread = (0.135, 0.005, -0.145), (0.03, 0.025, 0.03)
+    _at_face(pen, BOTH, place, spread, (48.0, 12.0), fingers=(-1.0, 0.4, 0.0), pitch=3)
 
 
 def _forearm(pen: Pen) -> None:
-    hands = (pen.main,)
-    shared = pen.around((-0.10, 0.03, -0.19), (0.05, 0.04, 0.03))
-    pole = pen.around((0.9, 0.0, -0.5), 0.15)
-    arrival = pen.raise_to(hands, "head", lambda _: (shared, pole, (-0.5, 0.3, 0.0)))
-    release = arrival + pen.hold()
-    _fidget(pen, hands, arrival, release)
-    end = pen.lower(hands, release)
-    away = degrees(pen.rng.normal(10, 6), 0, pen.rng.normal(0, 12))
-    pen.turn_and_back("head", pen.start_s + 0.1, end, away)
+    """The forearm lies across before the eyes."""
+    place, spread = (-0.09, 0.0, -0.19), (0.05, 0.04, 0.03)
+    swivel = (70.0, 15.0)
+    _at_face(pen, (pen.main,), place, spread, swivel, fingers=(-0.5, 0.3, 0.0), pitch=9)
 
 
 # --------------------------------------------------------------------------- loud
 
 
 def _ears_palms(pen: Pen) -> None:
-    _at_face(pen, BOTH, (0.145, -0.015, -0.07), (0.02, 0.03, 0.035), (-0.3, 0.8, 0.5), 6)
+    place, spread = (0.145, -0.015, -0.06), (0.02, 0.03, 0.04)
+    swivel, fingers = (57.0, 15.0), (-0.3, 0.8, 0.5)
+    _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=5, bow=_SIDEWAYS)
 
 
 def _ears_fingers(pen: Pen) -> None:
-    _at_face(pen, BOTH, (0.165, -0.055, -0.065), (0.018, 0.03, 0.03), (-0.8, 0.5, 0.2), 8)
+    place, spread = (0.165, -0.055, -0.055), (0.018, 0.03, 0.035)
+    swivel, fingers = (54.0, 19.0), (-0.8, 0.5, 0.2)
+    _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=6, bow=_SIDEWAYS)
 
 
 def _ears_clutch(pen: Pen) -> None:
-    _at_face(pen, BOTH, (0.145, 0.04, -0.01), (0.022, 0.03, 0.035), (-0.3, 0.9, 0.4), 14)
+    place, spread = (0.145, 0.04, -0.01), (0.022, 0.03, 0.035)
+    swivel, fingers = (62.0, 15.0), (-0.3, 0.9, 0.4)
+    _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=12, bow=_SIDEWAYS)
 
 
 def _ears_front(pen: Pen) -> None:
-    _at_face(pen, BOTH, (0.12, -0.02, -0.115), (0.02, 0.03, 0.02), (0.0, 0.6, 0.9), 8)
+    place, spread = (0.13, -0.01, -0.10), (0.02, 0.03, 0.02)
+    swivel, fingers = (55.0, 15.0), (0.0, 0.6, 0.9)
+    _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=6, bow=_SIDEWAYS)
 
 
 # --------------------------------------------------------------------------- smell
 
 
 def _pinch(pen: Pen) -> None:
-    hands = (pen.main,)
-    _at_face(pen, hands, (0.055, -0.155, -0.175), (0.03, 0.03, 0.025), (-0.4, 0.7, 0.5), -3)
-
-
-def _mouth_both(pen: Pen) -> None:
-    _at_face(pen, BOTH, (0.055, -0.185, -0.145), (0.018, 0.022, 0.025), (-0.6, 0.8, 0.3), 3)
-
-
-def _mouth_one(pen: Pen) -> None:
-    hands = (pen.main,)
-    _at_face(pen, hands, (0.075, -0.155, -0.14), (0.03, 0.025, 0.03), (-1.0, 0.3, 0.3), -3)
+    place, spread = (0.055, -0.155, -0.17), (0.03, 0.03, 0.025)
+    swivel = (70.0, 15.0) if pen.chance(0.25) else (32.0, 12.0)
+    _at_face(pen, (pen.main,), place, spread, swivel, fingers=(-0.4, 0.7, 0.5), pitch=-3)
 
 
 def _pinch_and_turn(pen: Pen) -> None:
     _pinch(pen)
-    stop = pen.start_s + 1.6
     away = degrees(-4, 0, pen.rng.choice((-1, 1)) * pen.uniform(15, 40))
-    pen.turn_and_back("head", pen.start_s + 0.3, stop, away)
+    start = pen.start_s + pen.uniform(0.1, 0.6)
+    pen.turn_and_back("head", start, start + pen.uniform(1.2, 2.0), away)
+
+
+def _mouth_both(pen: Pen) -> None:
+    place, spread = (0.055, -0.185, -0.14), (0.018, 0.022, 0.022)
+    _at_face(pen, BOTH, place, spread, (36.0, 12.0), fingers=(-0.6, 0.8, 0.3), pitch=2)
+
+
+def _mouth_one(pen: Pen) -> None:
+    place, spread = (0.075, -0.155, -0.14), (0.03, 0.025, 0.028)
+    swivel = (45.0, 18.0)
+    _at_face(pen, (pen.main,), place, spread, swivel, fingers=(-1.0, 0.3, 0.3), pitch=-3)
 
 
 # --------------------------------------------------------------------------- hot
 
 
 def _fan(pen: Pen, hands: Hands, centre: Vector, spread: Vector, size: tuple[float, float]) -> None:
-    shared = pen.around(centre, spread)
-    pole = pen.around((0.55, -0.75, -0.1), (0.2, 0.2, 0.15))
-    fingers = pen.around((-0.9, 0.6, 0.0), 0.2)
-
-    def place(side: int) -> tuple[Vector, Vector, Vector]:
-        return pen.around(shared, 0.02), pen.around(pole, 0.08), fingers
-
-    arrival = pen.raise_to(hands, "head", place, median_s=0.75)
+    """Hands wave air towards the face or the neck."""
+    arrival = pen.bring(
+        hands, "head", centre, spread, (32.0, 14.0), fingers=(-0.9, 0.6, 0.0), median_s=0.75
+    )
     release = arrival + max(1.0, pen.hold())
     frequency = pen.uniform(1.8, 4.2) * pen.person.tempo**0.5
     amplitude = pen.uniform(*size) * pen.person.vigour * min(1.0, 3.0 / frequency)
@@ -153,16 +161,14 @@ def _fan(pen: Pen, hands: Hands, centre: Vector, spread: Vector, size: tuple[flo
     lift = pen.uniform(-0.2, 0.5)
     opposed = pen.chance(0.3)
     for side in hands:
-        phase = np.pi * (side if opposed else 0) + pen.rng.normal(0, 0.3)
-        along = (amplitude * np.sin(angle), amplitude * lift, amplitude * np.cos(angle))
         pen.swing(
             side,
             arrival - pen.uniform(0.1, 0.3),
             release + 0.15,
-            along,
+            (amplitude * np.sin(angle), amplitude * lift, amplitude * np.cos(angle)),
             frequency,
             across=(0.2 * amplitude, 0.25 * amplitude, 0.0),
-            phase_rad=phase,
+            phase_rad=np.pi * (side if opposed else 0) + pen.rng.normal(0, 0.3),
         )
     end = pen.lower(hands, release)
     _flinch(pen, pen.start_s + 0.15, end, -6)
@@ -184,17 +190,13 @@ def _neck(pen: Pen) -> None:
 def _collar(pen: Pen) -> None:
     """A hand or both hands pull at the collar and let air in."""
     hands = BOTH if pen.chance(0.3) else (pen.main,)
-    shared = pen.around((0.06, -0.29, -0.15), (0.025, 0.03, 0.02))
-    pole = pen.around((0.7, -0.7, 0.0), 0.15)
-    arrival = pen.raise_to(
-        hands, "head", lambda _: (pen.around(shared, 0.01), pole, (-0.8, 0.4, 0.3))
-    )
+    place, spread = (0.06, -0.29, -0.15), (0.025, 0.03, 0.02)
+    arrival = pen.bring(hands, "head", place, spread, (42.0, 14.0), fingers=(-0.8, 0.4, 0.3))
     release = arrival + max(1.0, pen.hold())
     size = pen.uniform(0.02, 0.055) * pen.person.vigour
     frequency = pen.uniform(1.2, 3.0)
     for side in hands:
-        along = (0.2 * size, -0.2 * size, -size)
-        pen.swing(side, arrival, release + 0.1, along, frequency, phase_rad=0.0)
+        pen.swing(side, arrival, release + 0.1, (0.2 * size, -0.2 * size, -size), frequency)
     end = pen.lower(hands, release)
     _flinch(pen, pen.start_s + 0.15, end, -8)
 
@@ -202,22 +204,18 @@ def _collar(pen: Pen) -> None:
 # --------------------------------------------------------------------------- cold
 
 
-def _rub(
-    pen: Pen, sides: Hands, arrival: float, release: float, size: float, frequency: float
-) -> None:
+def _rub(pen: Pen, sides: Hands, arrival: float, release: float, size: float, rate: float) -> None:
     """Hands go up and down the opposite arms."""
     opposed = pen.chance(0.45)
     for side in sides:
-        phase = np.pi * (side if opposed else 0) + pen.rng.normal(0, 0.35)
         mine = size * pen.uniform(0.8, 1.2)
-        along = (-0.1 * mine, mine, 0.3 * mine)
         pen.swing(
             side,
             arrival - pen.uniform(0.0, 0.25),
             release + 0.1,
-            along,
-            frequency * pen.uniform(0.97, 1.03),
-            phase_rad=phase,
+            (-0.1 * mine, mine, 0.3 * mine),
+            rate * pen.uniform(0.97, 1.03),
+            phase_rad=np.pi * (side if opposed else 0) + pen.rng.normal(0, 0.35),
         )
 
 
@@ -234,16 +232,12 @@ def _shiver(pen: Pen, start_s: float, stop_s: float) -> None:
 
 def _hug(pen: Pen, height: float, low: float, high: float) -> None:
     """Crossed arms, each hand on the other arm."""
-    over = pen.main
-    shared = pen.around((-0.11, height, -0.18), (0.03, 0.035, 0.02))
-    pole = pen.around((0.75, -0.6, -0.15), (0.12, 0.12, 0.12))
-
-    def place(side: int) -> tuple[Vector, Vector, Vector]:
-        x, y, z = pen.around(shared, 0.012)
-        depth = -0.045 if side == over else 0.0
-        return (x, y + (0.03 if side == over else -0.01), z + depth), pole, (-0.6, 0.3, 0.5)
-
-    arrival = pen.raise_to(BOTH, "chest", place, median_s=0.95)
+    place, spread = (-0.11, height, -0.18), (0.03, 0.035, 0.02)
+    apart = {pen.main: (0.0, 0.03, -0.045), 1 - pen.main: (0.0, -0.01, 0.0)}
+    fingers = (-0.6, 0.3, 0.5)
+    arrival = pen.bring(
+        BOTH, "chest", place, spread, (40.0, 12.0), fingers=fingers, median_s=0.95, apart=apart
+    )
     release = arrival + max(1.0, pen.hold())
     size = pen.uniform(low, high) * pen.person.vigour
     frequency = pen.uniform(1.0, 3.6) * pen.person.tempo**0.5
@@ -271,10 +265,9 @@ def _one_arm(pen: Pen) -> None:
     bent = pen.chance(0.6)
     if bent:
         point = pen.around((0.04, -0.38, -0.26), (0.05, 0.05, 0.03))
-        pen.reach(other, start, pen.seconds(0.8), "chest", point, (0.7, -0.7, 0.3))
-    rubbed = pen.around((-0.13, -0.22, -0.17), (0.03, 0.05, 0.025))
-    pole = pen.around((0.7, -0.6, -0.3), 0.12)
-    arrival = pen.raise_to((side,), "chest", lambda _: (rubbed, pole, (-0.7, 0.2, 0.5)))
+        pen.reach(other, start, pen.seconds(0.8), "chest", point, bow=(0.0, 0.0, -0.05))
+    place, spread = (-0.13, -0.22, -0.17), (0.03, 0.05, 0.025)
+    arrival = pen.bring((side,), "chest", place, spread, (42.0, 10.0), fingers=(-0.7, 0.2, 0.5))
     release = arrival + max(1.0, pen.hold())
     size = pen.uniform(0.03, 0.09) * pen.person.vigour
     _rub(pen, (side,), arrival, release, size, pen.uniform(1.0, 3.0))
@@ -285,7 +278,6 @@ def _one_arm(pen: Pen) -> None:
 def _alternating(pen: Pen) -> None:
     """First one hand rubs the other arm, then the other way round."""
     first, second = pen.main, 1 - pen.main
-    pole = pen.around((0.7, -0.6, -0.25), 0.1)
     frequency = pen.uniform(1.2, 3.0)
     size = pen.uniform(0.03, 0.08) * pen.person.vigour
     belly = pen.around((0.03, -0.34, -0.25), 0.03)
@@ -293,14 +285,14 @@ def _alternating(pen: Pen) -> None:
     hand = (-0.7, 0.2, 0.5)
     move = pen.seconds(0.85)
     start = pen.start_s
-    pen.reach(first, start, move, "chest", rubbed, pole, hand=hand, bow=(0, 0, -0.06))
-    pen.reach(second, start + 0.1, move, "chest", belly, pole, hand=hand)
+    pen.reach(first, start, move, "chest", rubbed, hand=hand, bow=(0.0, 0.0, -0.08))
+    pen.reach(second, start + 0.1, move, "chest", belly, hand=hand, bow=(0.0, 0.0, -0.05))
     arrival = start + move
     change = arrival + pen.uniform(0.8, 1.8)
     _rub(pen, (first,), arrival, change, size, frequency)
     swap = pen.seconds(0.6)
-    pen.reach(first, change, swap, "chest", belly, pole, hand=hand, bow=(0, -0.05, -0.05))
-    pen.reach(second, change, swap, "chest", rubbed, pole, hand=hand, bow=(0, 0.03, 0.02))
+    pen.reach(first, change, swap, "chest", belly, hand=hand, bow=(0.0, -0.05, -0.05))
+    pen.reach(second, change, swap, "chest", rubbed, hand=hand, bow=(0.0, 0.03, 0.02))
     release = change + swap + pen.uniform(0.8, 1.8)
     _rub(pen, (second,), change + swap, release, size, frequency)
     end = pen.lower(BOTH, release)
@@ -315,16 +307,15 @@ def _wave(
     hands: Hands,
     centre: Vector,
     spread: Vector,
+    swivel: Swivel,
+    *,
     size: tuple[float, float],
     rate: tuple[float, float],
 ) -> None:
-    shared = pen.around(centre, spread)
-    pole = pen.around((0.35, -0.9, 0.05), (0.2, 0.1, 0.2))
-
-    def place(side: int) -> tuple[Vector, Vector, Vector]:
-        return pen.around(shared, 0.025), pen.around(pole, 0.08), (0.0, 0.7, 0.0)
-
-    arrival = pen.raise_to(hands, "chest", place, median_s=0.7)
+    """Hands swing sideways."""
+    arrival = pen.bring(
+        hands, "chest", centre, spread, swivel, fingers=(0.0, 0.7, 0.0), median_s=0.7
+    )
     frequency = pen.uniform(*rate) * pen.person.tempo**0.5
     release = arrival + max(pen.hold(), 1.5 / frequency)
     amplitude = pen.uniform(*size) * pen.person.vigour * min(1.0, 2.2 / frequency)
@@ -354,32 +345,32 @@ def _wave(
 
 def _beside_head(pen: Pen) -> None:
     place, spread = (0.33, 0.13, -0.28), (0.07, 0.07, 0.08)
-    _wave(pen, (pen.main,), place, spread, (0.07, 0.21), (1.3, 3.0))
+    _wave(pen, (pen.main,), place, spread, (22.0, 14.0), size=(0.07, 0.21), rate=(1.3, 3.0))
 
 
 def _before_face(pen: Pen) -> None:
-    place, spread = (0.20, 0.13, -0.38), (0.08, 0.07, 0.05)
-    _wave(pen, (pen.main,), place, spread, (0.10, 0.28), (1.2, 2.6))
+    place, spread = (0.22, 0.12, -0.38), (0.08, 0.07, 0.05)
+    _wave(pen, (pen.main,), place, spread, (26.0, 12.0), size=(0.10, 0.26), rate=(1.2, 2.6))
 
 
 def _high(pen: Pen) -> None:
     place, spread = (0.28, 0.42, -0.16), (0.07, 0.05, 0.08)
-    _wave(pen, (pen.main,), place, spread, (0.08, 0.25), (0.9, 2.4))
+    _wave(pen, (pen.main,), place, spread, (45.0, 16.0), size=(0.08, 0.25), rate=(0.9, 2.4))
 
 
 def _small(pen: Pen) -> None:
     place, spread = (0.30, -0.08, -0.25), (0.05, 0.06, 0.06)
-    _wave(pen, (pen.main,), place, spread, (0.03, 0.08), (1.8, 3.6))
+    _wave(pen, (pen.main,), place, spread, (16.0, 10.0), size=(0.03, 0.08), rate=(1.8, 3.6))
 
 
 def _both_hands(pen: Pen) -> None:
     place, spread = (0.35, 0.15, -0.25), (0.06, 0.12, 0.08)
-    _wave(pen, BOTH, place, spread, (0.06, 0.18), (1.2, 3.0))
+    _wave(pen, BOTH, place, spread, (25.0, 14.0), size=(0.06, 0.18), rate=(1.2, 3.0))
 
 
 def _both_high(pen: Pen) -> None:
     place, spread = (0.27, 0.42, -0.14), (0.07, 0.05, 0.07)
-    _wave(pen, BOTH, place, spread, (0.08, 0.22), (0.9, 2.2))
+    _wave(pen, BOTH, place, spread, (45.0, 14.0), size=(0.08, 0.22), rate=(0.9, 2.2))
 
 
 VARIANTS: Mapping[str, Mapping[str, tuple[float, Writer]]] = MappingProxyType(

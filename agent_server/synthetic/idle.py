@@ -14,6 +14,9 @@ from agent_server.synthetic.vigorous import VIGOROUS
 ACTIONS: Mapping[str, tuple[float, Writer]] = MappingProxyType({**EVERYDAY, **VIGOROUS})
 """Action -> (how often, what writes it)."""
 
+ON_FOOT = frozenset({"walk", "jog", "duck", "kick", "lunge", "jump", "bow"})
+"""Actions that nobody does seated."""
+
 
 def write_idle(pen: Pen, variant: str | None = None) -> Script:
     """Writes an idle action; without ``variant`` one that fits the posture is drawn.
@@ -22,9 +25,9 @@ def write_idle(pen: Pen, variant: str | None = None) -> Script:
         InvalidInput: If there is no such action.
     """
     if variant is None:
-        actions = EVERYDAY if pen.placement.seated and pen.chance(0.85) else ACTIONS
-        weights = np.array([weight for weight, _ in actions.values()])
-        variant = str(pen.rng.choice(list(actions), p=weights / weights.sum()))
+        names = [n for n in ACTIONS if not (pen.placement.seated and n in ON_FOOT)]
+        weights = np.array([ACTIONS[name][0] for name in names])
+        variant = str(pen.rng.choice(names, p=weights / weights.sum()))
     if variant not in ACTIONS:
         raise InvalidInput(
             f"variant is '{variant}', expected one of {', '.join(ACTIONS)} for '{IDLE}'",

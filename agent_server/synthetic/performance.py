@@ -9,7 +9,6 @@ from agent_server.domain.arrays import Float64
 from agent_server.synthetic.body import BodyMotion, Controls, move_body
 from agent_server.synthetic.person import Person, Placement
 from agent_server.synthetic.trajectory import (
-    LONG_AGO_S,
     ORIGIN,
     Drift,
     Move,
@@ -35,7 +34,8 @@ class Reach:
         frame: What the place is tied to: ``chest`` and ``upright`` (the vertical) count from
             the neck's base, ``head`` from the middle of the head, ``pelvis`` from the pelvis.
         point: Metres outwards, up and back, for the reference stature.
-        pole: Direction into which the elbow points: outwards, up, back, in the chest frame.
+        swivel_rad: How far the elbow is turned outwards about the line from shoulder to wrist:
+            0 hangs below it, a quarter turn points sideways. See ``body.elbow_direction``.
         hand: Direction added to the forearm's for the fingers, in the chest frame.
         bow: Largest deviation of the path from the straight one, in the chest frame.
         skew: Exponent on the relative time.
@@ -45,7 +45,7 @@ class Reach:
     duration_s: float
     frame: Frame
     point: Vector
-    pole: Vector
+    swivel_rad: float
     hand: Vector = ORIGIN
     bow: Vector = ORIGIN
     skew: float = 1.0
@@ -108,7 +108,7 @@ class Performance:
         trunk = trunk + self.trunk.at(times_s)
         trunk[:, 0] += 0.006 * np.sin(2 * np.pi * self.breath_hz * times_s)
         parts = [_arm(arm, wrist, times_s) for arm, wrist in zip(self.arms, wrists, strict=True)]
-        points, weights, poles, hands = (np.stack(part) for part in zip(*parts, strict=True))
+        points, weights, swivels, hands = (np.stack(part) for part in zip(*parts, strict=True))
         controls = Controls(
             pelvis=pelvis + self.pelvis.at(times_s),
             trunk=trunk,
@@ -118,22 +118,17 @@ class Performance:
             head_points=points[:, 2],
             pelvis_points=points[:, 3],
             weights=weights,
-            poles=poles,
+            swivels=swivels,
             hands=hands,
             feet=np.stack([foot.at(times_s) for foot in self.feet]),
         )
         return move_body(self.person, self.placement, controls, times_s)
 
 
-def resting(point: Reach) -> Reach:
-    """The same place, as if the hand had always been there."""
-    return Reach(LONG_AGO_S, 1.0, point.frame, point.point, point.pole, point.hand)
-
-
 def _arm(
     arm: Arm, involuntary: Float64, times_s: Float64
 ) -> tuple[Float64, Float64, Float64, Float64]:
-    """Wrist parts (4, T, 3) a frame, their weights (T, 4), elbow pole and finger direction."""
+    """Wrist parts (4, T, 3) a frame, weights (T, 4), elbow swivel (T,) and fingers (T, 3)."""
     reaches = _in_play(arm.reaches, times_s)
     shares = np.stack([progress(r.start_s, r.duration_s, r.skew, times_s) for r in reaches])
     shares[0] = 1.0
@@ -150,9 +145,9 @@ def _arm(
     bows = np.array([r.bow for r in reaches])
     parts[0] += (4 * shares * (1 - shares)).T @ bows
     parts[0] += involuntary + oscillate(arm.swings, times_s)
-    poles = held.T @ np.array([r.pole for r in reaches])
+    swivels = held.T @ np.array([r.swivel_rad for r in reaches])
     hands = held.T @ np.array([r.hand for r in reaches])
-    return parts, weights, poles, hands
+    return parts, weights, swivels, hands
 
 
 def _in_play(reaches: tuple[Reach, ...], times_s: Float64) -> list[Reach]:

@@ -1,10 +1,13 @@
 """Writes scripts: the movements of arms, trunk, head and feet that make up one action."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from agent_server.domain.arrays import Float64
 from agent_server.synthetic.performance import Frame, Reach
 from agent_server.synthetic.person import Person, Placement
 from agent_server.synthetic.trajectory import ORIGIN, Move, Oscillation, Vector
@@ -92,7 +95,7 @@ class Pen:
         """A number between both."""
         return float(self.rng.uniform(low, high))
 
-    def around(self, centre: Vector, spread: Vector | float) -> Vector:
+    def around(self, centre: ArrayLike, spread: Vector | float) -> Vector:
         """A point around ``centre``; ``spread`` is the standard deviation an axis."""
         offset = np.clip(self.rng.standard_normal(3), -2.0, 2.0) * spread
         x, y, z = np.asarray(centre) + offset
@@ -116,53 +119,31 @@ class Pen:
         duration_s: float,
         frame: Frame,
         point: Vector,
-        pole: Vector,
+        swivel: float | None = None,
         *,
         hand: Vector = ORIGIN,
         bow: Vector = ORIGIN,
     ) -> float:
-        """Moves one wrist; returns when it arrives."""
+        """Moves one wrist; returns when it arrives.
+
+        Args:
+            side: ``LEFT`` or ``RIGHT``.
+            start_s: When it starts.
+            duration_s: How long it takes.
+            frame: What the place is tied to, see ``performance.Reach``.
+            point: Metres outwards, up and back.
+            swivel: Degrees by which the elbow is turned outwards; None lets it hang naturally.
+            hand: Direction of the fingers beside the forearm's.
+            bow: How far the path swings out, in the chest frame.
+        """
+        before = self._reaches[side][-1] if self._reaches[side] else self.rest[side]
+        bow = detour(from_neck(before.frame, before.point), from_neck(frame, point), bow)
+        turned = natural_swivel(frame, point) if swivel is None else swivel
+        turned += float(np.clip(self.rng.normal(0, 4), -8, 8))
         skew = float(np.clip(self.rng.normal(1.0, 0.12), 0.8, 1.3))
-        reach = Reach(start_s, duration_s, frame, point, pole, hand, bow, skew)
+        reach = Reach(start_s, duration_s, frame, point, float(np.radians(turned)), hand, bow, skew)
         self._reaches[side].append(reach)
         return reach.end_s
-
-    def raise_to(
-        self,
-        hands: Hands,
-        frame: Frame,
-        place: Callable[[int], tuple[Vector, Vector, Vector]],
-        *,
-        median_s: float = 0.85,
-        start_s: float | None = None,
-    ) -> float:
-        """Brings hands from rest to where ``place(side)`` (point, pole, fingers) says.
-
-        Now and then the hand hesitates on the way, or falls short and corrects itself.
-        Returns when the last hand has arrived.
-        """
-        start = self.start_s if start_s is None else start_s
-        duration = self.seconds(median_s)
-        arrival = start
-        for side in hands:
-            point, pole, fingers = place(side)
-            begin = start + (self._delay[side] if len(hands) > 1 else 0.0)
-            mine = duration * self.uniform(0.93, 1.07)
-            bow = self.around((0.05, 0.0, -0.09), (0.04, 0.03, 0.04))
-            if self.chance(0.08):
-                x, y, z = self.around((0.12, -0.28, -0.25), 0.05)
-                stop = self.reach(side, begin, 0.7 * mine, "chest", (x, y, z), pole, bow=bow)
-                begin = stop + self.uniform(-0.1, 0.3)
-                mine *= 0.7
-                bow = ORIGIN
-            if self.chance(0.25):
-                short = self.around(point, (0.02, 0.035, 0.02))
-                stop = self.reach(side, begin, mine, frame, short, pole, hand=fingers, bow=bow)
-                begin, mine = stop - 0.15 * mine, self.uniform(0.25, 0.4)
-                bow = ORIGIN
-            end = self.reach(side, begin, mine, frame, point, pole, hand=fingers, bow=bow)
-            arrival = max(arrival, end)
-        return arrival
 
     def bring(
         self,
@@ -170,20 +151,57 @@ class Pen:
         frame: Frame,
         centre: Vector,
         spread: Vector | float,
+        swivel: tuple[float, float] | None = None,
         *,
-        pole: Vector | None = None,
         fingers: Vector = ORIGIN,
         median_s: float = 0.85,
         start_s: float | None = None,
+        bow: Vector = (0.07, 0.0, -0.11),
+        apart: Mapping[int, Vector] = MappingProxyType({}),
     ) -> float:
-        """Brings hands near ``centre``, both to much the same place; returns the arrival."""
+        """Brings hands to much the same place on both sides; returns when the last is there.
+
+        Now and then a hand hesitates on the way, or falls short and corrects itself.
+
+        Args:
+            hands: Which ones.
+            frame: What the place is tied to.
+            centre: Mean place, metres outwards, up and back.
+            spread: Its standard deviation.
+            swivel: Mean and standard deviation of the elbows' turn, in degrees.
+            fingers: Direction of the fingers beside the forearm's.
+            median_s: Typical duration.
+            start_s: When it starts; the action's start if None.
+            bow: How far the path typically swings out.
+            apart: What one side adds to the common place.
+        """
         shared = self.around(centre, spread)
-        elbow = self.around(natural_pole(shared) if pole is None else pole, 0.15)
-
-        def place(_: int) -> tuple[Vector, Vector, Vector]:
-            return self.around(shared, 0.012), self.around(elbow, 0.05), self.around(fingers, 0.1)
-
-        return self.raise_to(hands, frame, place, median_s=median_s, start_s=start_s)
+        mean = natural_swivel(frame, shared) if swivel is None else swivel[0]
+        turned = float(np.clip(self.rng.normal(mean, swivel[1] if swivel else 8.0), -30, 130))
+        path = self.around(bow, (0.06, 0.02, 0.05))
+        start = self.start_s if start_s is None else start_s
+        duration = self.seconds(median_s)
+        arrival = start
+        for side in hands:
+            point = self.around(np.add(shared, apart.get(side, ORIGIN)), 0.012)
+            hand = self.around(fingers, 0.12)
+            curve = self.around(path, 0.015)
+            begin = start + (self._delay[side] if len(hands) > 1 else 0.0)
+            mine = duration * self.uniform(0.93, 1.07)
+            if self.chance(0.07):
+                pause = self.around((0.14, -0.28, -0.27), 0.05)
+                stop = self.reach(side, begin, 0.7 * mine, "chest", pause, bow=curve)
+                begin = stop + self.uniform(-0.1, 0.3)
+                mine *= 0.7
+                curve = ORIGIN
+            if self.chance(0.25):
+                short = self.around(point, (0.02, 0.035, 0.02))
+                stop = self.reach(side, begin, mine, frame, short, turned, hand=hand, bow=curve)
+                begin, mine = stop - 0.15 * mine, self.uniform(0.25, 0.4)
+                curve = ORIGIN
+            end = self.reach(side, begin, mine, frame, point, turned, hand=hand, bow=curve)
+            arrival = max(arrival, end)
+        return arrival
 
     def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.9) -> float:
         """Brings hands back to rest; returns when the last one is there."""
@@ -193,9 +211,10 @@ class Pen:
             rest = self.rest[side]
             begin = start_s + (self._delay[1 - side] if len(hands) > 1 else 0.0)
             mine = duration * self.uniform(0.9, 1.1)
-            bow = self.around((0.04, 0.0, -0.07), 0.03)
+            bow = self.around((0.06, 0.0, -0.09), 0.04)
+            swivel = float(np.degrees(rest.swivel_rad))
             arrival = self.reach(
-                side, begin, mine, rest.frame, rest.point, rest.pole, hand=rest.hand, bow=bow
+                side, begin, mine, rest.frame, rest.point, swivel, hand=rest.hand, bow=bow
             )
             end = max(end, arrival)
         return end
@@ -290,14 +309,57 @@ def degrees(pitch: float, roll: float, yaw: float) -> Vector:
     return float(p), float(r), float(y)
 
 
-def natural_pole(point: Vector) -> Vector:
-    """Where the elbow points of its own accord when the wrist is at ``point``.
+def from_neck(frame: Frame, point: Vector) -> Float64:
+    """About where a place of any frame lies in the chest frame of somebody upright."""
+    return np.asarray(point) + _FRAME_ORIGINS[frame]
 
-    It hangs below a hand in front of the body and turns outwards as the hand goes up.
+
+def natural_swivel(frame: Frame, point: Vector) -> float:
+    """By how many degrees an elbow turns out of its own accord with the wrist at ``point``.
+
+    More for hands across the body and high up, less for hands far out: medians of Kinect
+    recordings of free movement.
     """
-    high = float(np.clip((point[1] + 0.2) / 0.6, 0.0, 1.0))
-    return 0.45 + 0.6 * high, -0.8 + 0.6 * high, 0.45 - 0.35 * high
+    outwards, up, _ = from_neck(frame, point)
+    aside = float(np.clip(outwards - 0.19, -0.25, 0.35))
+    return 27.0 - 45.0 * aside + 55.0 * float(np.clip(up - 0.05, 0.0, 0.45))
 
+
+def detour(start: Float64, end: Float64, bow: Vector) -> Vector:
+    """Widens the bow of a path so that it leads around the trunk and clear of the shoulder.
+
+    A wrist that passes close to its own shoulder would whirl the elbow about.
+
+    Args:
+        start: Where the wrist is, in the chest frame, outwards, up and back.
+        end: Where it goes.
+        bow: How far the path would swing out in its middle.
+    """
+    x, y, z = bow
+    if (start[2] > 0.06) != (end[2] > 0.06) and min(start[1], end[1]) < -0.2:
+        # To the back, or away from it, around the hip.
+        x += 0.8 * max(0.0, 0.3 - 0.5 * float(start[0] + end[0]))
+    share = np.linspace(0.1, 0.9, 9)[:, None]
+    straight = start + share * (end - start)
+    path = straight + 4 * share * (1 - share) * (x, y, z)
+    nearest = int(np.argmin(np.linalg.norm(path - _SHOULDER, axis=1)))
+    gap = float(np.linalg.norm(path[nearest] - _SHOULDER))
+    if gap < _CLEARANCE_M:
+        strength = 4 * float(share[nearest, 0] * (1 - share[nearest, 0]))
+        z -= (_CLEARANCE_M - gap + 0.04) / max(strength, 0.5)
+    return x, y, z
+
+
+_FRAME_ORIGINS: Mapping[Frame, Vector] = MappingProxyType(
+    {
+        "chest": ORIGIN,
+        "upright": ORIGIN,
+        "head": (0.0, 0.17, -0.02),
+        "pelvis": (0.0, -0.54, 0.0),
+    }
+)
+_SHOULDER = np.array([0.19, -0.05, 0.0])
+_CLEARANCE_M = 0.22
 
 Writer = Callable[[Pen], None]
 """Writes the movements of one action with a pen."""

@@ -19,7 +19,7 @@ from agent_server.domain.skeleton import CoreJoint, SkeletonFrame
 from agent_server.domain.stamp import to_ns
 from agent_server.errors import InvalidInput
 from agent_server.synthetic.body import BodyMotion
-from agent_server.synthetic.failures import exposure, fail
+from agent_server.synthetic.failures import Weakness, exposure, fail
 from agent_server.synthetic.tables import TABLES, Places, place_core, place_table
 
 
@@ -41,10 +41,7 @@ class Sensor:
         depth_factor: Error along z against the others.
         depth_scale: Standard deviation of a constant relative error of depth differences.
         lag_s: Time constant of the tracker's low-pass filter.
-        failures_hz: Failures of a wrist or elbow a second while it is fully exposed to them.
-        jump_m: Size of the jumps in a failure, smallest and largest.
-        inferred: Share of failures that the sensor owns up to with a lower confidence.
-        untracked_hz: How often a second an exposed joint is given up.
+        weakness: How it fails on joints that are hard to see; None for never.
     """
 
     name: str
@@ -60,36 +57,73 @@ class Sensor:
     depth_factor: float
     depth_scale: float
     lag_s: float
-    failures_hz: float
-    jump_m: tuple[float, float]
-    inferred: float
-    untracked_hz: float
+    weakness: Weakness | None
 
 
 MOCAP = Sensor(
-    name="mocap", format=None, places="marker", rate_hz=100.0, tick_jitter_s=0.0,
-    lost_frames=0.0, fit_m=0.008, wander_m=0.0008, wander_s=0.2, jitter_m=0.0003,
-    depth_factor=1.0, depth_scale=0.0, lag_s=0.0, failures_hz=0.0, jump_m=(0.0, 0.0),
-    inferred=0.0, untracked_hz=0.0,
-)  # fmt: skip
+    name="mocap",
+    format=None,
+    places="marker",
+    rate_hz=100.0,
+    tick_jitter_s=0.0,
+    lost_frames=0.0,
+    fit_m=0.008,
+    wander_m=0.0008,
+    wander_s=0.2,
+    jitter_m=0.0003,
+    depth_factor=1.0,
+    depth_scale=0.0,
+    lag_s=0.0,
+    weakness=None,
+)
 KINECT_V2 = Sensor(
-    name="kinect_v2", format="kinect_v2", places="kinect_v2", rate_hz=30.0,
-    tick_jitter_s=0.0015, lost_frames=0.006, fit_m=0.010, wander_m=0.006, wander_s=0.35,
-    jitter_m=0.0012, depth_factor=1.3, depth_scale=0.02, lag_s=0.030, failures_hz=0.55,
-    jump_m=(0.05, 0.15), inferred=0.85, untracked_hz=0.03,
-)  # fmt: skip
+    name="kinect_v2",
+    format="kinect_v2",
+    places="kinect_v2",
+    rate_hz=30.0,
+    tick_jitter_s=0.0015,
+    lost_frames=0.006,
+    fit_m=0.010,
+    wander_m=0.006,
+    wander_s=0.35,
+    jitter_m=0.0012,
+    depth_factor=1.3,
+    depth_scale=0.02,
+    lag_s=0.030,
+    weakness=Weakness(failures_hz=0.55, jump_m=(0.05, 0.15), inferred=0.85, untracked_hz=0.03),
+)
 KINECT_V1 = Sensor(
-    name="kinect_v1", format="kinect_v1", places="kinect_v1", rate_hz=30.0,
-    tick_jitter_s=0.0030, lost_frames=0.012, fit_m=0.014, wander_m=0.009, wander_s=0.30,
-    jitter_m=0.0012, depth_factor=1.2, depth_scale=0.03, lag_s=0.040, failures_hz=0.8,
-    jump_m=(0.05, 0.17), inferred=0.35, untracked_hz=0.01,
-)  # fmt: skip
+    name="kinect_v1",
+    format="kinect_v1",
+    places="kinect_v1",
+    rate_hz=30.0,
+    tick_jitter_s=0.0030,
+    lost_frames=0.012,
+    fit_m=0.014,
+    wander_m=0.009,
+    wander_s=0.30,
+    jitter_m=0.0012,
+    depth_factor=1.2,
+    depth_scale=0.03,
+    lag_s=0.040,
+    weakness=Weakness(failures_hz=0.8, jump_m=(0.05, 0.17), inferred=0.35, untracked_hz=0.01),
+)
 WEBCAM = Sensor(
-    name="webcam", format=None, places="webcam", rate_hz=30.0, tick_jitter_s=0.004,
-    lost_frames=0.02, fit_m=0.012, wander_m=0.008, wander_s=0.30, jitter_m=0.0025,
-    depth_factor=4.0, depth_scale=0.15, lag_s=0.040, failures_hz=0.5, jump_m=(0.05, 0.15),
-    inferred=0.7, untracked_hz=0.02,
-)  # fmt: skip
+    name="webcam",
+    format=None,
+    places="webcam",
+    rate_hz=30.0,
+    tick_jitter_s=0.004,
+    lost_frames=0.02,
+    fit_m=0.012,
+    wander_m=0.008,
+    wander_s=0.30,
+    jitter_m=0.0025,
+    depth_factor=4.0,
+    depth_scale=0.15,
+    lag_s=0.040,
+    weakness=Weakness(failures_hz=0.5, jump_m=(0.05, 0.15), inferred=0.7, untracked_hz=0.02),
+)
 SENSORS: tuple[Sensor, ...] = (KINECT_V2, KINECT_V1, MOCAP, WEBCAM)
 
 
@@ -205,8 +239,8 @@ def _sense(body: BodyMotion, sensor: Sensor, rng: np.random.Generator) -> tuple[
     size = (1.0 + 1.2 * exposed[..., None]) * far
     seen += _wander(n, 9, sensor, rng) * size * _SURENESS[:, None]
     confidence = np.ones((n, 9))
-    if sensor.failures_hz:
-        fail(seen, confidence, exposed, body.times_s, sensor, rng)
+    if sensor.weakness is not None:
+        fail(seen, confidence, exposed, body.times_s, sensor.weakness, rng)
     if sensor.lag_s:
         seen = _low_pass(seen, sensor)
     seen += sensor.jitter_m * rng.standard_normal((n, 9, 3)) * far * axes

@@ -5,7 +5,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees, natural_pole
+from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees
 from agent_server.synthetic.trajectory import ORIGIN, Vector
 
 
@@ -20,7 +20,7 @@ def _through(
         for side in hands:
             own = pen.around(shared, 0.02)
             bow = pen.around(ORIGIN, 0.03)
-            pen.reach(side, at, duration, "chest", own, natural_pole(own), bow=bow)
+            pen.reach(side, at, duration, "chest", own, bow=bow)
         at += 0.85 * duration
     return at + 0.15 * duration
 
@@ -59,8 +59,7 @@ def _walk(pen: Pen) -> None:
 def _jog(pen: Pen) -> None:
     rate = pen.uniform(1.2, 1.6)
     place, spread = (0.20, -0.36, -0.18), (0.03, 0.04, 0.05)
-    pole = (0.3, -0.2, 0.9)
-    arrival = pen.bring(BOTH, "chest", place, spread, pole=pole, median_s=0.5)
+    arrival = pen.bring(BOTH, "chest", place, spread, median_s=0.5)
     stop = arrival + pen.uniform(1.0, 3.0)
     _march(pen, rate, pen.uniform(0.15, 0.3), stop, 0.0)
     size = pen.uniform(0.08, 0.16)
@@ -72,25 +71,24 @@ def _jog(pen: Pen) -> None:
 
 def _lift_arms(pen: Pen) -> None:
     """Stretched arms go out and up, stay, and come down."""
-    out, up = pen.around((0.55, -0.02, -0.05), 0.06), pen.around((0.28, 0.46, -0.02), 0.1)
-    pole = (0.2, -0.6, 0.6)
+    out, up = pen.around((0.68, -0.02, -0.08), 0.06), pen.around((0.30, 0.50, -0.05), 0.1)
     half = pen.seconds(0.7)
     for side in BOTH:
-        pen.reach(side, pen.start_s, half, "chest", out, pole, bow=(0.08, 0, 0))
-        pen.reach(side, pen.start_s + 0.7 * half, half, "chest", up, (1.0, 0, 0.3), bow=(0.1, 0, 0))
+        pen.reach(side, pen.start_s, half, "chest", out, bow=(0.08, 0, 0))
+        pen.reach(side, pen.start_s + 0.7 * half, half, "chest", up, bow=(0.1, 0, 0))
     arrival = pen.start_s + 1.7 * half
     release = arrival + pen.uniform(0.0, 1.5)
     if pen.chance(0.5):
         for side in BOTH:
-            pen.reach(side, release, half, "chest", out, pole, bow=(0.1, 0, 0))
+            pen.reach(side, release, half, "chest", out, bow=(0.1, 0, 0))
         release += 0.7 * half
     pen.lower(BOTH, release)
 
 
 def _sideways(pen: Pen) -> None:
     """Spreads both arms like wings."""
-    place, spread = (0.56, -0.05, -0.05), (0.06, 0.15, 0.08)
-    arrival = pen.bring(BOTH, "chest", place, spread, pole=(0.2, -0.8, 0.5))
+    place, spread = (0.68, -0.04, -0.10), (0.06, 0.15, 0.10)
+    arrival = pen.bring(BOTH, "chest", place, spread)
     release = arrival + pen.uniform(0.2, 2.0)
     if pen.chance(0.3):
         for side in BOTH:
@@ -140,13 +138,13 @@ def _kick(pen: Pen) -> None:
     spread = pen.around((0.38, -0.38, -0.02), 0.09)
     for hand in BOTH:
         spot = pen.around(spread, 0.06)
-        pen.reach(hand, pen.start_s, 1.6 * lift, "chest", spot, natural_pole(spot))
+        pen.reach(hand, pen.start_s, 1.6 * lift, "chest", spot)
     pen.lower(BOTH, end - lift)
 
 
 def _push_side(pen: Pen) -> None:
     """One hand sweeps across, out or in."""
-    spots: list[Vector] = [(-0.08, -0.10, -0.36), (0.48, -0.08, -0.28)]
+    spots: list[Vector] = [(-0.08, -0.10, -0.36), (0.56, -0.08, -0.28)]
     if pen.chance(0.5):
         spots.reverse()
     end = _through(pen, (pen.main,), spots, 0.6, spread=0.07)
@@ -157,7 +155,7 @@ def _push_side(pen: Pen) -> None:
 
 def _push_forward(pen: Pen) -> None:
     hands = BOTH if pen.chance(0.7) else (pen.main,)
-    spots: list[Vector] = [(0.15, -0.16, -0.22), (0.17, -0.05, -0.52)]
+    spots: list[Vector] = [(0.15, -0.16, -0.22), (0.17, -0.05, -0.56)]
     end = _through(pen, hands, spots, 0.5)
     pen.lower(hands, end + pen.uniform(0, 0.6))
 
@@ -182,26 +180,25 @@ def _shoot(pen: Pen) -> None:
         end = _through(pen, BOTH, spots, 0.55)
     else:
         shared = pen.around((0.035, -0.08, -0.48), (0.015, 0.08, 0.05))
-        end = pen.bring(BOTH, "chest", shared, 0.01, pole=(0.7, -0.6, 0.2))
+        end = pen.bring(BOTH, "chest", shared, 0.01)
         for _ in range(int(pen.rng.integers(0, 4))):
             kicked = (shared[0], shared[1] + 0.06, shared[2] + 0.05)
             for side in BOTH:
-                pen.reach(side, end, 0.12, "chest", kicked, (0.7, -0.6, 0.2))
-                pen.reach(side, end + 0.12, 0.3, "chest", shared, (0.7, -0.6, 0.2))
+                pen.reach(side, end, 0.12, "chest", kicked)
+                pen.reach(side, end + 0.12, 0.3, "chest", shared)
             end += pen.uniform(0.45, 0.9)
     pen.lower(BOTH, end + pen.uniform(0.1, 1.0))
 
 
 def _punch(pen: Pen) -> None:
     guard = pen.around((0.12, -0.08, -0.25), (0.03, 0.06, 0.04))
-    pole = pen.around((0.6, -0.8, 0.2), 0.1)
-    at = pen.bring(BOTH, "chest", guard, 0.01, pole=pole, median_s=0.6)
+    at = pen.bring(BOTH, "chest", guard, 0.01, median_s=0.6)
     for index in range(int(pen.rng.integers(1, 6))):
         side = pen.main if pen.chance(0.3) else index % 2
         target = pen.around((0.06, 0.02, -0.53), 0.07)
         out, back = pen.uniform(0.16, 0.3), pen.uniform(0.2, 0.35)
-        pen.reach(side, at, out, "chest", target, pole)
-        pen.reach(side, at + out, back, "chest", guard, pole)
+        pen.reach(side, at, out, "chest", target)
+        pen.reach(side, at + out, back, "chest", guard)
         at += out + back + pen.uniform(-0.1, 0.3)
     pen.sway("trunk", pen.start_s, at, degrees(1, 0, 8), 1.2)
     pen.lower(BOTH, at + 0.1)
@@ -221,7 +218,7 @@ def _club(pen: Pen) -> None:
             (pen.start_s + windup, stroke, front),
         ):
             own = (sign * spot[0] + 0.02, spot[1], spot[2] - 0.06 * (sign < 0))
-            pen.reach(hand, begin, duration, "chest", own, (0.7, -0.6, 0.0), bow=(0, 0, -0.08))
+            pen.reach(hand, begin, duration, "chest", own, bow=(0, 0, -0.08))
     pen.turn("trunk", pen.start_s, windup, degrees(4, 0, -25 * side))
     pen.turn("trunk", pen.start_s + windup, stroke, degrees(6, 0, 30 * side))
     end = pen.start_s + windup + stroke + pen.uniform(0.0, 0.4)
@@ -256,16 +253,16 @@ def _strokes(pen: Pen) -> None:
 
 def _weapon(pen: Pen) -> None:
     """A hand goes over the shoulder to the back and returns to the front."""
-    behind = pen.around((0.12, 0.05, 0.12), 0.03)
+    behind = pen.around((0.14, 0.13, 0.09), 0.03)
     first = pen.seconds(0.8)
-    pen.reach(pen.main, pen.start_s, first, "chest", behind, (1.0, 0.6, -0.2), bow=(0.15, 0, -0.1))
+    pen.reach(pen.main, pen.start_s, first, "chest", behind, 105.0, bow=(0.0, 0, -0.1))
     at = pen.start_s + first + pen.uniform(0, 0.4)
     front = pen.around((0.12, -0.28, -0.32), 0.05)
     move = pen.seconds(0.7)
-    pen.reach(pen.main, at, move, "chest", front, natural_pole(front), bow=(0.1, 0.05, 0))
+    pen.reach(pen.main, at, move, "chest", front, bow=(0.1, 0.05, 0))
     hands: Hands = (pen.main,)
     if pen.chance(0.6):
-        pen.reach(1 - pen.main, at, move, "chest", pen.around(front, 0.06), natural_pole(front))
+        pen.reach(1 - pen.main, at, move, "chest", pen.around(front, 0.06))
         hands = BOTH
     pen.lower(hands, at + move + pen.uniform(0, 0.8))
 
@@ -315,7 +312,7 @@ def _catch(pen: Pen) -> None:
     arrival = pen.bring(BOTH, "chest", place, spread, median_s=0.45)
     hugged = pen.around((0.08, -0.28, -0.22), 0.03)
     for side in BOTH:
-        pen.reach(side, arrival, 0.35, "chest", hugged, natural_pole(hugged))
+        pen.reach(side, arrival, 0.35, "chest", hugged)
     pen.lower(BOTH, arrival + 0.35 + pen.uniform(0, 1.0))
 
 
@@ -353,8 +350,8 @@ def _signal(pen: Pen) -> None:
         hands = BOTH if pen.chance(0.4) else (int(pen.rng.integers(2)),)
         move = pen.seconds(0.6)
         for side in hands:
-            spot = pen.around((0.38, 0.06, -0.22), (0.16, 0.20, 0.14))
-            pen.reach(side, at, move, "chest", spot, natural_pole(spot))
+            spot = pen.around((0.42, 0.06, -0.26), (0.19, 0.22, 0.16))
+            pen.reach(side, at, move, "chest", spot)
         at += move + pen.uniform(0.0, 0.8)
     pen.lower(BOTH, at)
 
@@ -366,10 +363,10 @@ def _anything(pen: Pen) -> None:
     for side in hands:
         at = pen.start_s + pen.uniform(0, 0.4)
         for _ in range(int(pen.rng.integers(1, 5))):
-            spot = (pen.uniform(-0.12, 0.5), pen.uniform(-0.5, 0.4), pen.uniform(-0.48, -0.16))
+            spot = (pen.uniform(-0.15, 0.62), pen.uniform(-0.5, 0.45), pen.uniform(-0.56, -0.14))
             move = pen.seconds(0.65, 0.3)
             bow = pen.around(ORIGIN, 0.05)
-            arrival = pen.reach(side, at, move, "chest", spot, natural_pole(spot), bow=bow)
+            arrival = pen.reach(side, at, move, "chest", spot, bow=bow)
             at = arrival + pen.uniform(-0.2, 0.8)
             if pen.chance(0.12):
                 along = pen.around(ORIGIN, 0.05)
