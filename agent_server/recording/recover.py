@@ -12,7 +12,7 @@ from mcap.records import Channel, Message, Metadata, Schema
 from mcap.stream_reader import MAGIC_SIZE
 
 from agent_server.errors import RecordingError
-from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
+from agent_server.recording.metadata import FORMAT_VERSION, METADATA_NAME, RecordingMetadata
 from agent_server.recording.reader import open_recording
 from agent_server.recording.scan import (
     DamagedError,
@@ -118,9 +118,7 @@ class _Copy:
         """Copy one record of the old file, if it holds something and can be read."""
         try:
             if raw.opcode == Opcode.METADATA:
-                metadata = raw.parse(Metadata.read)
-                self._sink.metadata(metadata.name, metadata.metadata)
-                self._has_metadata |= metadata.name == METADATA_NAME
+                self._metadata(raw)
             elif raw.opcode == Opcode.CHUNK:
                 for item in raw.chunk():
                     self._item(item)
@@ -144,6 +142,19 @@ class _Copy:
             description="Recovered; what it said of itself is lost.",
         )
         self._sink.metadata(METADATA_NAME, metadata.to_strings())
+
+    def _metadata(self, raw: RawRecord) -> None:
+        record = raw.parse(Metadata.read)
+        if record.name == METADATA_NAME:
+            version = record.metadata.get("format_version", "")
+            try:
+                RecordingMetadata.from_strings(record.metadata, raw.path)
+            except RecordingError as error:
+                if version.isdecimal() and int(version) > FORMAT_VERSION:
+                    raise
+                raise DamagedError(raw.path, raw.offset, "its metadata are garbled") from error
+            self._has_metadata = True
+        self._sink.metadata(record.name, record.metadata)
 
     def _item(self, item: Schema | Channel | Message) -> None:
         if isinstance(item, Schema):

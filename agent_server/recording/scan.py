@@ -29,7 +29,14 @@ RECOVER_HINT = "`agent-server recover IN OUT` saves what is whole"
 _PREFIX = struct.Struct("<BQ")  # opcode, length of what follows
 _FOOTER_SIZE = _PREFIX.size + 20
 
-_PARSE_ERRORS = (McapError, zstandard.ZstdError, struct.error, ValueError, MemoryError)
+_PARSE_ERRORS = (
+    McapError,
+    zstandard.ZstdError,
+    struct.error,
+    ValueError,
+    OverflowError,
+    MemoryError,
+)
 """All that the library raises over bytes that make no sense; its CRC error is a ValueError."""
 
 R = TypeVar("R", bound=McapRecord)
