@@ -1,0 +1,238 @@
+"""Command line of training, export and evaluation: ``python -m models --help``."""
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
+
+import torch
+import typer
+
+from agent_server.errors import AgentServerError
+from models.data.splits import cmu_split, synthetic_split
+from models.data.windows import cut, join
+
+if TYPE_CHECKING:
+    from models.export.session import OnnxModel
+
+app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
+train_app = typer.Typer(no_args_is_help=True, help="Train a model.")
+app.add_typer(train_app, name="train")
+
+DataOption = Annotated[Path, typer.Option("--data", help="Folder that holds cmu_mocap/.")]
+OutOption = Annotated[Path, typer.Option("--out", help="Folder of the run.")]
+ConfigOption = Annotated[str, typer.Option("--config", help="Name of the configuration.")]
+SeedOption = Annotated[int, typer.Option("--seed", help="Of everything random.")]
+ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")]
+StepsOption = Annotated[int | None, typer.Option("--steps", help="Instead of the config's.")]
+CacheOption = Annotated[
+    Path, typer.Option("--cache", help="Where generated recordings are kept.")
+]
+CACHE = Path("runs/cache")
+T = TypeVar("T")
+
+
+def _command(model: str, config: str, seed: int, steps: int | None, extra: str = "") -> str:
+    """The command for the card; folders are left to the reader."""
+    count = "" if steps is None else f" --steps {steps}"
+    return (
+        f"python -m models train {model} --config {config} --data DIR{extra} --out RUN"
+        f" --seed {seed}{count}"
+    )
+
+
+@train_app.command("ma_wgan")
+def train_ma_wgan(
+    data: DataOption,
+    out: OutOption,
+    config: ConfigOption = "server",
+    seed: SeedOption = 0,
+    resume: ResumeOption = False,
+    steps: StepsOption = None,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Train the predictor."""
+    from dataclasses import replace
+
+    from models.ma_wgan.config import CONFIGS
+    from models.ma_wgan.train import train
+    from models.training.run import Run
+
+    chosen = _choose(CONFIGS, config)
+    if steps is not None:
+        chosen = replace(chosen, steps=steps)
+    torch.set_num_threads(1)
+    run = Run(out, chosen, seed, _command("ma_wgan", config, seed, steps), resume)
+    synthetic = cut(synthetic_split(cache, "train", chosen.synthetic_sequences))
+    mocap = cut(cmu_split(data, "train"))
+    validation = {
+        "synthetic": cut(synthetic_split(cache, "validation"), stride=25),
+        "cmu": cut(cmu_split(data, "validation"), stride=5),
+    }
+    train(chosen, run, [(0.6, synthetic), (0.4, mocap)], validation)
+
+
+@train_app.command("interformer")
+def train_interformer(
+    data: DataOption,
+    out: OutOption,
+    predictor: Annotated[Path, typer.Option("--predictor", help="Run of a trained predictor.")],
+    config: ConfigOption = "server",
+    seed: SeedOption = 0,
+    resume: ResumeOption = False,
+    steps: StepsOption = None,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Train the classifier on seen and predicted frames."""
+    from dataclasses import replace
+
+    from models.interformer.config import CONFIGS
+    from models.interformer.train import train
+    from models.ma_wgan.train import load_predictor
+    from models.training.run import Run
+
+    chosen = _choose(CONFIGS, config)
+    if steps is not None:
+        chosen = replace(chosen, steps=steps)
+    torch.set_num_threads(1)
+    command = _command("interformer", config, seed, steps, " --predictor PREDICTOR_RUN")
+    run = Run(out, chosen, seed, command, resume)
+    training = join(
+        [
+            cut(synthetic_split(cache, "train", chosen.synthetic_sequences)),
+            cut(cmu_split(data, "train")),
+        ]
+    )
+    validation = join(
+        [
+            cut(synthetic_split(cache, "validation"), stride=5),
+            cut(cmu_split(data, "validation"), stride=5),
+        ]
+    )
+    train(chosen, run, training, validation, load_predictor(predictor))
+
+
+export_app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")
+evaluate_app = typer.Typer(no_args_is_help=True, help="Measure a bundle.")
+app.add_typer(export_app, name="export")
+app.add_typer(evaluate_app, name="evaluate")
+
+RunOption = Annotated[Path, typer.Option("--run", help="Run to export.")]
+VersionOption = Annotated[str, typer.Option("--version", help="Version of the model.")]
+BundleOption = Annotated[Path, typer.Option("--bundle", help="Folder of a bundle.")]
+PredictorBundleOption = Annotated[
+    Path, typer.Option("--predictor", help="Bundle whose predictor completes the windows.")
+]
+JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on one line.")]
+PREDICTOR = Path("models/artifacts/ma_wgan_server")
+CLASSIFIER = Path("models/artifacts/interformer_server")
+
+
+@export_app.command("ma_wgan")
+def export_ma_wgan(
+    data: DataOption,
+    run: RunOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = PREDICTOR,
+    version: VersionOption = "0.1.0",
+    cache: CacheOption = CACHE,
+) -> None:
+    """Export, check and measure a predictor."""
+    from models.export.predictor import export_predictor
+
+    torch.set_num_threads(1)
+    _show(export_predictor(run, out, version, data, cache).results, as_json=False)
+
+
+@export_app.command("interformer")
+def export_interformer(
+    data: DataOption,
+    run: RunOption,
+    predictor: PredictorBundleOption = PREDICTOR,
+    seen_only: Annotated[
+        Path | None, typer.Option("--seen-only", help="Run of the classifier of 1 s alone.")
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = CLASSIFIER,
+    version: VersionOption = "0.1.0",
+    cache: CacheOption = CACHE,
+) -> None:
+    """Calibrate, export, check and measure a classifier."""
+    from models.export.classifier import export_classifier
+
+    torch.set_num_threads(1)
+    manifest = export_classifier(run, predictor, seen_only, out, version, data, cache)
+    _show(manifest.results, as_json=False)
+
+
+@evaluate_app.command("prediction")
+def evaluate_prediction(
+    data: DataOption,
+    bundle: BundleOption = PREDICTOR,
+    as_json: JsonOption = False,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Errors of a predictor beside standing still."""
+    from models.evaluation.report import prediction_report
+
+    _show(prediction_report(_model(bundle), data, cache), as_json)
+
+
+@evaluate_app.command("gestures")
+def evaluate_gestures(
+    data: DataOption,
+    bundle: BundleOption = CLASSIFIER,
+    predictor: PredictorBundleOption = PREDICTOR,
+    benchmark: Annotated[
+        Literal["synthetic", "sim2real"],
+        typer.Option("--benchmark", help="Held-out virtual people, or real recordings."),
+    ] = "synthetic",
+    as_json: JsonOption = False,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Accuracy, calibration, delays and false reactions of a classifier."""
+    from models.evaluation.report import classifier_report
+    from models.evaluation.sim2real import sim2real_report
+
+    classify, predict = _model(bundle), _model(predictor)
+    if benchmark == "sim2real":
+        _show(sim2real_report(classify.batched, predict.batched, data), as_json)
+    else:
+        _show(classifier_report(classify, predict, data, cache), as_json)
+
+
+@app.command()
+def latency(as_json: JsonOption = False) -> None:
+    """Time of both shipped models for one window, on one thread."""
+    from models.evaluation.latency import bundle_latency
+
+    _show({path.name: bundle_latency(path) for path in (PREDICTOR, CLASSIFIER)}, as_json)
+
+
+def _model(bundle: Path) -> "OnnxModel":
+    from agent_server.inference.manifest import MODEL_FILE, read_manifest
+    from models.export.session import OnnxModel
+
+    read_manifest(bundle)
+    return OnnxModel(bundle / MODEL_FILE)
+
+
+def _show(values: dict[str, Any], as_json: bool) -> None:
+    print(json.dumps(values, indent=None if as_json else 2))
+
+
+def _choose(configs: dict[str, T], name: str) -> T:
+    if name not in configs:
+        raise typer.BadParameter(f"'{name}' is none of {', '.join(configs)}", param_hint="--config")
+    return configs[name]
+
+
+def main() -> None:
+    """Run the command line; an error of the product is one sentence on stderr."""
+    try:
+        app()
+    except AgentServerError as error:
+        print(error, file=sys.stderr)
+        raise SystemExit(1) from error
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""Motion for training: one reader a data set, then windows and augmentation."""

@@ -1,0 +1,230 @@
+"""Three-second windows over recordings, normalised, labelled and augmented."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from agent_server.domain.gesture import GESTURES, IDLE
+from agent_server.domain.motion import CLASSIFIED_FRAMES, SEEN_FRAMES
+from agent_server.domain.skeleton import CoreJoint
+from agent_server.errors import InvalidInput
+
+AMBIGUOUS = -1
+"""Label of a window that is left out of training and of accuracies."""
+STARTED_FRAMES = 8
+"""A gesture counts from this many frames (0.32 s) after its onset; before, it is ambiguous."""
+LEAVING_FRAMES = 10
+"""It stops counting this many frames (0.4 s) before its offset: the hands are mostly back."""
+MIRROR = [
+    CoreJoint.HEAD,
+    CoreJoint.NECK,
+    CoreJoint.NAVEL,
+    CoreJoint.RIGHT_SHOULDER,
+    CoreJoint.RIGHT_ELBOW,
+    CoreJoint.RIGHT_WRIST,
+    CoreJoint.LEFT_SHOULDER,
+    CoreJoint.LEFT_ELBOW,
+    CoreJoint.LEFT_WRIST,
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """One take, with what happens in it.
+
+    Attributes:
+        observed: Shape (T, 9, 3), metres: what the sensor gives, at 25 Hz.
+        clean: Shape (T, 9, 3), metres: where the joints are; the same array where unknown.
+        gesture: Label of the stretch from ``onset`` to ``offset``; None says that nothing is
+            known about gestures here, so that no window gets a label.
+        onset: Frame in which the movement starts.
+        offset: Frame in which the body is back at rest.
+        subject: Who moves.
+    """
+
+    observed: np.ndarray
+    clean: np.ndarray
+    gesture: str | None
+    onset: int
+    offset: int
+    subject: str
+
+
+def window_label(gesture: str | None, onset: int, offset: int, last_seen: int) -> int:
+    """Index in GESTURES of the window whose last seen frame is ``last_seen``, or AMBIGUOUS.
+
+    A gesture is going on from 8 frames after its onset until 10 frames before its offset.
+    Outside onset to offset it is idle; the two margins are ambiguous.
+    """
+    if gesture is None:
+        return AMBIGUOUS
+    idle = GESTURES.index(IDLE)
+    if gesture == IDLE or last_seen < onset or last_seen >= offset:
+        return idle
+    if onset + STARTED_FRAMES <= last_seen <= offset - LEAVING_FRAMES:
+        return GESTURES.index(gesture)
+    return AMBIGUOUS
+
+
+@dataclass(frozen=True, slots=True)
+class WindowSet:
+    """All windows of some recordings; the frames are kept once.
+
+    Attributes:
+        observed: Shape (F, 9, 3), all recordings one after the other.
+        clean: Shape (F, 9, 3).
+        starts: Shape (N,), first frame of each window.
+        labels: Shape (N,), index in GESTURES or AMBIGUOUS.
+        since_onset: Shape (N,), frames from the gesture's onset to the last seen frame;
+            negative before it.
+        recordings: Shape (N,), index of the recording.
+    """
+
+    observed: torch.Tensor
+    clean: torch.Tensor
+    starts: torch.Tensor
+    labels: torch.Tensor
+    since_onset: torch.Tensor
+    recordings: torch.Tensor
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def take(self, index: torch.Tensor) -> "WindowSet":
+        """The windows with these indices."""
+        return WindowSet(
+            self.observed,
+            self.clean,
+            self.starts[index],
+            self.labels[index],
+            self.since_onset[index],
+            self.recordings[index],
+        )
+
+    def frames(self, index: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+        """Observed and clean windows, both (B, 75, 9, 3), normalised alike."""
+        at = self.starts[index, None] + torch.arange(CLASSIFIED_FRAMES)
+        observed, clean = self.observed[at], self.clean[at]
+        origin = observed[:, SEEN_FRAMES - 1, None, None, CoreJoint.NAVEL].clone()
+        return observed - origin, clean - origin
+
+
+def cut(recordings: Iterable[Recording], stride: int = 1) -> WindowSet:
+    """Every window of 75 frames that fits into a recording, ``stride`` frames apart.
+
+    Raises:
+        InvalidInput: If no recording is long enough.
+    """
+    observed: list[np.ndarray] = []
+    clean: list[np.ndarray] = []
+    rows: list[tuple[int, int, int, int]] = []
+    base = 0
+    for number, recording in enumerate(recordings):
+        frames = len(recording.observed)
+        for start in range(0, frames - CLASSIFIED_FRAMES + 1, stride):
+            last = start + SEEN_FRAMES - 1
+            label = window_label(recording.gesture, recording.onset, recording.offset, last)
+            rows.append((base + start, label, last - recording.onset, number))
+        observed.append(recording.observed)
+        clean.append(recording.clean)
+        base += frames
+    if not rows:
+        raise InvalidInput(f"no recording has {CLASSIFIED_FRAMES} frames: give longer ones")
+    starts, labels, since, numbers = torch.tensor(rows, dtype=torch.int64).T
+    return WindowSet(
+        torch.from_numpy(np.concatenate(observed)).float(),
+        torch.from_numpy(np.concatenate(clean)).float(),
+        starts,
+        labels,
+        since,
+        numbers,
+    )
+
+
+def join(sets: Sequence[WindowSet]) -> WindowSet:
+    """Several sets as one; recordings are numbered on."""
+    starts, numbers = [], []
+    frames = recordings = 0
+    for one in sets:
+        starts.append(one.starts + frames)
+        numbers.append(one.recordings + recordings)
+        frames += len(one.observed)
+        recordings += int(one.recordings.max()) + 1
+    return WindowSet(
+        torch.cat([one.observed for one in sets]),
+        torch.cat([one.clean for one in sets]),
+        torch.cat(starts),
+        torch.cat([one.labels for one in sets]),
+        torch.cat([one.since_onset for one in sets]),
+        torch.cat(numbers),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Augmentation:
+    """How windows are varied in training.
+
+    Attributes:
+        yaw: Largest turn about the vertical, in radians.
+        scale: Largest relative change of the body's size.
+        noise_m: Largest standard deviation of added sensor noise, in metres.
+        drop: Chance that a joint of an arm stays where it was for part of the seen second.
+    """
+
+    yaw: float
+    scale: float
+    noise_m: float
+    drop: float
+
+
+def augment(
+    observed: torch.Tensor,
+    clean: torch.Tensor,
+    how: Augmentation,
+    generator: torch.Generator,
+) -> tuple[torch.Tensor, torch.Tensor]:
+    """Vary normalised windows (B, 75, 9, 3); noise and dropped joints touch only ``observed``."""
+    size = len(observed)
+    angle = (torch.rand(size, generator=generator) * 2 - 1) * how.yaw
+    grow = 1 + (torch.rand(size, generator=generator) * 2 - 1) * how.scale
+    flip = torch.where(torch.rand(size, generator=generator) < 0.5, -1.0, 1.0)
+    cosine, sine, zero = torch.cos(angle), torch.sin(angle), torch.zeros(size)
+    turn = torch.stack(
+        [flip * cosine, zero, flip * -sine, zero, torch.ones(size), zero, sine, zero, cosine], -1
+    ).reshape(size, 1, 3, 3)
+    turn = turn * grow[:, None, None, None]
+    mirrored = (flip < 0)[:, None, None, None]
+    observed = torch.where(mirrored, observed[:, :, MIRROR], observed) @ turn
+    clean = torch.where(mirrored, clean[:, :, MIRROR], clean) @ turn
+    sigma = how.noise_m * torch.rand(size, generator=generator) ** 2
+    noise = torch.randn(observed.shape, generator=generator) * sigma[:, None, None, None]
+    observed = _hold_joints(observed + noise, how.drop, generator)
+    origin = observed[:, SEEN_FRAMES - 1, None, None, CoreJoint.NAVEL].clone()
+    return observed - origin, clean - origin
+
+
+def _hold_joints(
+    observed: torch.Tensor, chance: float, generator: torch.Generator
+) -> torch.Tensor:
+    """Let elbows and wrists keep their last known position for up to half a second."""
+    size, frames = observed.shape[:2]
+    for joint in (
+        CoreJoint.LEFT_ELBOW,
+        CoreJoint.LEFT_WRIST,
+        CoreJoint.RIGHT_ELBOW,
+        CoreJoint.RIGHT_WRIST,
+    ):
+        dropped = torch.rand(size, generator=generator) < chance
+        first = torch.randint(1, SEEN_FRAMES, (size,), generator=generator)
+        count = torch.randint(1, SEEN_FRAMES // 2, (size,), generator=generator)
+        time = torch.arange(frames)[None]
+        held = dropped[:, None] & (time >= first[:, None]) & (time < (first + count)[:, None])
+        source = torch.where(held, first[:, None] - 1, time)
+        observed[:, :, joint] = observed[:, :, joint].gather(1, source[:, :, None].expand(-1, -1, 3))
+    return observed
+
+
+HALF_QUARTER_TURN = math.pi / 4

@@ -1,0 +1,164 @@
+"""How well gestures are told apart, how early, and how rarely where there is none."""
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+import torch
+
+from agent_server.domain.arrays import Float32
+from agent_server.domain.gesture import GESTURES, IDLE
+from agent_server.domain.motion import RATE_HZ, SEEN_FRAMES
+from agent_server.domain.skeleton import CoreJoint
+from models.data.windows import AMBIGUOUS, Recording, WindowSet
+
+HOP_FRAMES = 5
+STREAK = 3
+THRESHOLD = 0.6
+COOL_DOWN_WINDOWS = 10
+"""A decision is a gesture above 0.6 in three windows in a row, 0.2 s apart; then 2 s of rest."""
+
+Predict = Callable[[Float32], Float32]
+"""seen (B, 25, 9, 3) -> future (B, 50, 9, 3)."""
+Classify = Callable[[Float32], Float32]
+"""motion (B, 75, 9, 3) -> probabilities (B, C)."""
+
+
+def hold_last(seen: Float32) -> Float32:
+    """The future that repeats the last seen frame."""
+    return np.repeat(seen[:, -1:], 50, axis=1)
+
+
+def probabilities_of(classify: Classify, predict: Predict, seen: Float32) -> Float32:
+    """Probabilities (N, C) of windows of which only the seen second (N, 25, 9, 3) is known."""
+    return classify(np.concatenate([seen, predict(seen)], axis=1))
+
+
+def labelled_windows(windows: WindowSet) -> tuple[Float32, Float32, np.ndarray]:
+    """Seen frames, whole windows and labels of the windows that have one and whose future
+    shows nothing that the label does not say."""
+    since = windows.since_onset
+    hidden = (since < 0) & (since > -50)
+    index = ((windows.labels != AMBIGUOUS) & ~hidden).nonzero()[:, 0]
+    motion = windows.frames(index)[0].numpy()
+    return motion[:, :SEEN_FRAMES], motion, windows.labels[index].numpy()
+
+
+def scores(probabilities: Float32, labels: np.ndarray) -> dict[str, Any]:
+    """Accuracy, its balanced form, recall a class, calibration error and confusion."""
+    guess = probabilities.argmax(1)
+    confusion = np.zeros((len(GESTURES), len(GESTURES)), dtype=int)
+    np.add.at(confusion, (labels, guess), 1)
+    shown = confusion.sum(1)
+    recall = np.divide(confusion.diagonal(), shown, where=shown > 0, out=np.zeros(len(shown)))
+    return {
+        "windows": len(labels),
+        "accuracy": round(float((guess == labels).mean()), 4),
+        "balanced_accuracy": round(float(recall[shown > 0].mean()), 4),
+        "recall": {name: round(float(r), 4) for name, r in zip(GESTURES, recall, strict=True)},
+        "ece": round(calibration_error(probabilities, labels), 4),
+        "confusion": confusion.tolist(),
+    }
+
+
+def calibration_error(probabilities: Float32, labels: np.ndarray, bins: int = 15) -> float:
+    """Expected calibration error: mean gap of confidence and accuracy over equal bins."""
+    confidence = probabilities.max(1)
+    right = probabilities.argmax(1) == labels
+    which = np.minimum((confidence * bins).astype(int), bins - 1)
+    gap = 0.0
+    for b in range(bins):
+        inside = which == b
+        if inside.any():
+            gap += inside.mean() * abs(float(confidence[inside].mean() - right[inside].mean()))
+    return gap
+
+
+def sliding_seen(positions: Float32) -> tuple[Float32, np.ndarray]:
+    """Normalised seen windows (N, 25, 9, 3) of a stream, 5 frames apart, and their last frame."""
+    last = np.arange(SEEN_FRAMES - 1, len(positions), HOP_FRAMES)
+    windows = positions[last[:, None] + np.arange(1 - SEEN_FRAMES, 1)]
+    return windows - windows[:, -1:, CoreJoint.NAVEL : CoreJoint.NAVEL + 1], last
+
+
+def decisions(probabilities: Float32) -> list[tuple[int, str]]:
+    """Windows in which a gesture is decided on, and which."""
+    found: list[tuple[int, str]] = []
+    streak, current, resting = 0, IDLE, 0
+    for window, row in enumerate(probabilities):
+        best = GESTURES[int(row.argmax())]
+        streak = streak + 1 if best == current else 1
+        current = best
+        if resting:
+            resting -= 1
+        # The streak counts windows above the threshold only.
+        if row.max() <= THRESHOLD:
+            streak = 0
+        if best != IDLE and streak >= STREAK and not resting:
+            found.append((window, best))
+            resting = COOL_DOWN_WINDOWS
+    return found
+
+
+def evaluate_decisions(
+    classify: Classify, predict: Predict, recordings: Iterable[Recording]
+) -> dict[str, Any]:
+    """What is decided on takes of one gesture each: right, wrong, missed, and how late.
+
+    The delay runs from the onset to the end of the deciding window, in seconds.
+    """
+    delays: list[float] = []
+    right = wrong = missed = 0
+    for take in recordings:
+        if take.gesture in (None, IDLE):
+            continue
+        seen, last = sliding_seen(take.observed)
+        found = decisions(probabilities_of(classify, predict, seen))
+        if not found:
+            missed += 1
+        elif found[0][1] == take.gesture:
+            right += 1
+            delays.append((int(last[found[0][0]]) - take.onset) / RATE_HZ)
+        else:
+            wrong += 1
+    total = right + wrong + missed
+    return {
+        "takes": total,
+        "right": round(right / total, 4),
+        "wrong": round(wrong / total, 4),
+        "missed": round(missed / total, 4),
+        "delay_s_p50": round(float(np.median(delays)), 3) if delays else None,
+        "delay_s_p90": round(float(np.percentile(delays, 90)), 3) if delays else None,
+    }
+
+
+def false_reactions(
+    classify: Classify, predict: Predict, streams: Iterable[Float32]
+) -> dict[str, Any]:
+    """Decisions on streams in which nothing is to be decided, (T, 9, 3) each."""
+    frames, found = 0, []
+    for positions in streams:
+        if len(positions) < SEEN_FRAMES:
+            continue
+        seen, _ = sliding_seen(positions)
+        found += [name for _, name in decisions(probabilities_of(classify, predict, seen))]
+        frames += len(positions)
+    minutes = frames / RATE_HZ / 60
+    return {
+        "minutes": round(minutes, 1),
+        "false_reactions": len(found),
+        "per_10_minutes": round(10 * len(found) / minutes, 2),
+        "gestures": sorted(found),
+    }
+
+
+def as_torch(model: torch.nn.Module) -> Callable[[Float32], Float32]:
+    """A torch network as a function of arrays, a few hundred rows at a time."""
+
+    def run(values: Float32) -> Float32:
+        with torch.no_grad():
+            parts = [model(part) for part in torch.from_numpy(values).split(256)]
+        result: Float32 = torch.cat(parts).numpy()
+        return result
+
+    return run

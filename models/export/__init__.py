@@ -1,0 +1,1 @@
+"""Torch networks as bundles: ONNX, golden values, manifest, card, each checked."""

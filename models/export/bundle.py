@@ -1,0 +1,135 @@
+"""Putting a bundle together."""
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+import torch
+from torch import nn
+
+from agent_server.domain.arrays import Float32
+from agent_server.domain.motion import RATE_HZ
+from agent_server.inference.manifest import (
+    CARD_FILE,
+    FORMAT_VERSION,
+    GOLDEN_FILE,
+    MODEL_FILE,
+    DataSource,
+    Manifest,
+    Training,
+    read_manifest,
+    write_manifest,
+)
+from models.data import cmu, synthetic
+from models.export.onnx import OPSET, check_parity, is_batch_exact, write_onnx
+from models.export.session import OnnxModel
+
+GOLDEN_ROWS = 6
+LICENCE = "Apache-2.0"
+SOURCES = [
+    DataSource(synthetic.SOURCE, synthetic.LICENCE, synthetic=True),
+    DataSource(cmu.SOURCE, cmu.LICENCE, synthetic=False),
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Export:
+    """A network on its way into a bundle.
+
+    Attributes:
+        name: Name of the bundle.
+        version: Version of the model.
+        task: ``predict`` or ``classify``.
+        network: In evaluation mode, on the CPU.
+        windows: Held-out inputs (N, frames, 9, 3), at least 16, to check and for the goldens.
+        output_frames: Frames it gives, 0 for a classifier.
+        labels: Class names, empty for a predictor.
+        info: What the training run says about itself.
+    """
+
+    name: str
+    version: str
+    task: Literal["predict", "classify"]
+    network: nn.Module
+    windows: Float32
+    output_frames: int
+    labels: tuple[str, ...]
+    info: dict[str, Any]
+
+
+def write_bundle(
+    export: Export,
+    folder: Path,
+    measure: Callable[[Path], dict[str, Any]],
+    card: Callable[[Manifest], str],
+) -> Manifest:
+    """Write, check and measure a bundle; nothing is left behind if a check fails.
+
+    Args:
+        export: What to write.
+        folder: Where; replaced file by file.
+        measure: Gives the results that the manifest and the card hold, from the ONNX file.
+        card: Renders the card.
+
+    Raises:
+        BundleError: If ONNX does not compute what torch does.
+    """
+    input_name, output_name = (
+        ("seen", "future") if export.task == "predict" else ("motion", "probabilities")
+    )
+    with tempfile.TemporaryDirectory() as scratch:
+        draft = Path(scratch)
+        path = draft / MODEL_FILE
+        example = torch.from_numpy(export.windows[:2])
+        write_onnx(export.network, example, path, input_name, output_name)
+        model = OnnxModel(path)
+        results = {
+            **measure(path),
+            "onnx_difference": check_parity(export.network, model, export.windows),
+        }
+        golden = _golden_input(export.windows)
+        np.savez_compressed(
+            draft / GOLDEN_FILE, **{input_name: golden, output_name: model(golden)}
+        )
+        manifest = Manifest(
+            format_version=FORMAT_VERSION,
+            name=export.name,
+            version=export.version,
+            task=export.task,
+            skeleton="core9",
+            rate_hz=RATE_HZ,
+            input_frames=export.windows.shape[1],
+            output_frames=export.output_frames,
+            labels=list(export.labels),
+            normaliser="navel_last_seen",
+            opset=OPSET,
+            parameters=sum(p.numel() for p in export.network.parameters()),
+            batch_exact=is_batch_exact(model, export.windows),
+            files={},
+            licence=LICENCE,
+            training=Training(
+                command=export.info["command"],
+                seed=export.info["seed"],
+                data=SOURCES,
+                wall_s=export.info["wall_s"],
+                hardware=export.info["hardware"],
+            ),
+            results=results,
+        )
+        (draft / CARD_FILE).write_text(card(manifest))
+        write_manifest(draft, manifest)
+        checked = read_manifest(draft)
+        folder.mkdir(parents=True, exist_ok=True)
+        for file in draft.iterdir():
+            (folder / file.name).write_bytes(file.read_bytes())
+    return checked
+
+
+def _golden_input(windows: Float32) -> Float32:
+    """A few real windows and one that stands still, which is where quotients go wrong."""
+    spread = np.linspace(0, len(windows) - 1, GOLDEN_ROWS - 1).astype(int)
+    still = np.repeat(windows[:1, :1], windows.shape[1], axis=1)
+    return np.concatenate([windows[spread], still])

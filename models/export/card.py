@@ -1,0 +1,160 @@
+"""Cards: what a model is, how it was made and what was measured, in Markdown."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from agent_server.domain.gesture import GESTURES
+from agent_server.inference.manifest import Manifest
+from models.evaluation.prediction import HORIZONS_MS
+
+SETS = {
+    "synthetic": "synthetic people that no split of the training has seen",
+    "cmu": "CMU motion capture, the published test files",
+}
+GESTURE_ROWS = {
+    "1s+2s_predicted": "1 s seen, 2 s predicted (as it runs)",
+    "1s+last_frame": "1 s seen, last frame repeated",
+    "1s_only": "another network of the same size, trained on 1 s alone",
+    "3s_true": "3 s seen, nothing predicted",
+}
+
+
+def predictor_card(manifest: Manifest) -> str:
+    """The card of a predictor."""
+    results = manifest.results
+    lines = [
+        _head(manifest, "Predicts two seconds of motion from the last one."),
+        "Input `seen` (B, 25, 9, 3), output `future` (B, 50, 9, 3), float32: metres, origin at "
+        "the navel of the last seen frame, axes of the camera frame, 25 Hz.",
+        "",
+        "A generator trained with a critic on tangent vectors of the sphere of square-root "
+        "velocity functions (manifold-aware Wasserstein GAN); log map, exp map and integration "
+        "from the last seen pose are inside the graph.",
+        "",
+        "## Measured",
+        "Mean distance of the nine joints from the truth in mm (MPJPE) at each horizon; the "
+        "truth is the motion without sensor noise. *Zero velocity* repeats the last seen pose.",
+    ]
+    for name, words in SETS.items():
+        lines += ["", f"On {words} ({results[name]['windows']} windows):", ""]
+        lines += _horizon_table(results[name])
+        lines += ["", _motion_line(results[name])]
+    return "\n".join([*lines, "", *_tail(manifest)])
+
+
+def classifier_card(manifest: Manifest) -> str:
+    """The card of a classifier."""
+    results = manifest.results
+    lines = [
+        _head(manifest, "Tells seven gestures apart from one second seen and two predicted."),
+        "Input `motion` (B, 75, 9, 3) float32: 25 seen and 50 predicted frames at 25 Hz, metres, "
+        "origin at the navel of the last seen frame, axes of the camera frame. Output "
+        f"`probabilities` (B, 7): {', '.join(GESTURES)}.",
+        "",
+        "An Interformer encoder: attention between joints (masked by the skeleton, a head a "
+        "coordinate) in parallel with attention between moments. The temperature that calibrates "
+        f"the probabilities ({results['temperature']:.2f}) is inside the graph.",
+        "",
+        "A window shows a gesture from 0.32 s after its onset until 0.4 s before its end; windows "
+        "in between are left out of training and of the accuracies.",
+        "",
+        "## Measured",
+        "On synthetic people that no split of the training has seen:",
+        "",
+        "| what the classifier gets | accuracy | mean recall | calibration error |",
+        "|---|---|---|---|",
+    ]
+    for key, words in GESTURE_ROWS.items():
+        if key in results:
+            row = results[key]
+            lines.append(
+                f"| {words} | {_percent(row['accuracy'])} | "
+                f"{_percent(row['balanced_accuracy'])} | {row['ece']:.3f} |"
+            )
+    recall = results["1s+2s_predicted"]["recall"]
+    lines += [
+        "",
+        "Recall of each class with predicted frames: "
+        + ", ".join(f"{name} {_percent(value)}" for name, value in recall.items())
+        + ".",
+        "",
+        "Decisions (three windows in a row above 0.6, 0.2 s apart):",
+        "",
+        *_decision_lines(results["decisions"]),
+        "",
+        "Reactions where there should be none:",
+        "",
+    ]
+    lines += [
+        f"- {words}: {row['false_reactions']} in {row['minutes']} minutes"
+        for words, row in (
+            ("synthetic idle motion with hard negatives", results["idle_synthetic"]),
+            ("CMU test recordings", results["idle_cmu"]),
+        )
+    ]
+    return "\n".join([*lines, "", *_tail(manifest)])
+
+
+def _head(manifest: Manifest, sentence: str) -> str:
+    return (
+        f"# {manifest.name} {manifest.version}\n\n{sentence}\n\n"
+        f"{manifest.parameters:,} parameters, ONNX opset {manifest.opset}, weights under "
+        f"{manifest.licence}.\n"
+    )
+
+
+def _horizon_table(row: Mapping[str, Any]) -> list[str]:
+    def cells(values: Mapping[str, float]) -> str:
+        return " | ".join(f"{values[str(ms)]:.1f}" for ms in HORIZONS_MS)
+
+    return [
+        "| | " + " | ".join(f"{ms} ms" for ms in HORIZONS_MS) + " |",
+        "|---" * (len(HORIZONS_MS) + 1) + "|",
+        f"| this model | {cells(row['mpjpe'])} |",
+        f"| zero velocity | {cells(row['zero_velocity'])} |",
+    ]
+
+
+def _motion_line(row: Mapping[str, Any]) -> str:
+    return (
+        f"It moves {row['mpjs_mm']} mm a frame where the truth moves {row['true_mpjs_mm']}; its "
+        f"first step is {row['jump_mm']} mm; bones deviate by {row['bone_error_mm']} mm."
+    )
+
+
+def _decision_lines(row: Mapping[str, Any]) -> list[str]:
+    return [
+        f"- {row['takes']} takes of one gesture: {_percent(row['right'])} right, "
+        f"{_percent(row['wrong'])} wrong, {_percent(row['missed'])} missed",
+        f"- from onset to decision: median {row['delay_s_p50']} s, "
+        f"nine in ten within {row['delay_s_p90']} s",
+    ]
+
+
+def _tail(manifest: Manifest) -> list[str]:
+    training, results = manifest.training, manifest.results
+    same = "the same bits as" if manifest.batch_exact else "other bits than"
+    return [
+        f"- one window on one thread: p50 {results['latency']['p50_ms']} ms, "
+        f"p95 {results['latency']['p95_ms']} ms",
+        f"- torch and ONNX differ by at most {results['onnx_difference']:.1e}",
+        f"- a row of a batch of up to 16 has {same} a batch of one",
+        "",
+        "## How it was made",
+        *(f"- {s.name}: {_origin(s.synthetic)}, licence: {s.licence}" for s in training.data),
+        f"- `{training.command}`",
+        f"- seed {training.seed}, {training.wall_s / 60:.0f} minutes on {training.hardware}",
+        "- the checkpoint was chosen on validation people and recordings",
+        "",
+        "The synthetic motion is made up by a program. It says nothing yet about how the model "
+        "does on real people performing these gestures.",
+        "",
+    ]
+
+
+def _origin(synthetic: bool) -> str:
+    return "synthetic" if synthetic else "real recordings"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.1f} %"

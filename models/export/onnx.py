@@ -1,0 +1,76 @@
+"""Torch -> ONNX, and the checks that the file computes the same."""
+
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import nn
+
+from agent_server.domain.arrays import Float32
+from agent_server.errors import BundleError
+from models.export.session import OnnxModel
+
+OPSET = 18
+TOLERANCE = 1e-4
+LARGEST_BATCH = 16
+
+
+def write_onnx(
+    network: nn.Module, example: torch.Tensor, path: Path, input_name: str, output_name: str
+) -> None:
+    """Export a network with one input and one output, batch axis free, weights inside.
+
+    Args:
+        network: In evaluation mode.
+        example: A batch of at least two rows, so that the batch axis is not taken as fixed.
+        path: The file to write.
+        input_name: Name of the input.
+        output_name: Name of the output.
+    """
+    batch = torch.export.Dim("batch", min=1, max=4096)
+    program = torch.onnx.export(
+        network,
+        (example,),
+        dynamo=True,
+        opset_version=OPSET,
+        input_names=[input_name],
+        output_names=[output_name],
+        dynamic_shapes=({0: batch},),
+        verbose=False,
+    )
+    if program is None:
+        raise BundleError(f"the exporter gave no program for {path}")
+    program.optimize()
+    program.save(path, external_data=False)
+
+
+def check_parity(network: nn.Module, model: OnnxModel, values: Float32) -> float:
+    """Largest difference of torch and ONNX on ``values`` (N, ...).
+
+    Raises:
+        BundleError: If it is above 1e-4.
+    """
+    with torch.no_grad():
+        expected = network(torch.from_numpy(values)).numpy()
+    worst = float(np.abs(model.batched(values) - expected).max())
+    if not worst <= TOLERANCE:
+        raise BundleError(
+            f"torch and ONNX differ by {worst:.2g}, more than {TOLERANCE}: look for an "
+            "operator that the exporter translates differently"
+        )
+    return worst
+
+
+def is_batch_exact(model: OnnxModel, values: Float32) -> bool:
+    """Whether every row of batches of 1 to 16 has the bits that it has alone.
+
+    Args:
+        model: The exported model.
+        values: At least 16 rows.
+    """
+    alone = [model(values[i : i + 1])[0] for i in range(LARGEST_BATCH)]
+    return all(
+        np.array_equal(model(values[:size])[i], alone[i])
+        for size in range(1, LARGEST_BATCH + 1)
+        for i in range(size)
+    )

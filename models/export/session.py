@@ -1,0 +1,35 @@
+"""Running an exported model the way the server does: one thread that does not spin."""
+
+from pathlib import Path
+
+import numpy as np
+import onnxruntime as ort
+
+from agent_server.domain.arrays import Float32
+
+
+class OnnxModel:
+    """An ONNX file with one input and one output.
+
+    Args:
+        path: The file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        options = ort.SessionOptions()
+        options.intra_op_num_threads = 1
+        options.inter_op_num_threads = 1
+        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+        self._session = ort.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+        self.input = self._session.get_inputs()[0].name
+        self.output = self._session.get_outputs()[0].name
+
+    def __call__(self, values: Float32) -> Float32:
+        """Run a batch."""
+        result: Float32 = self._session.run(None, {self.input: values})[0]
+        return result
+
+    def batched(self, values: Float32, size: int = 256) -> Float32:
+        """Run any number of rows, ``size`` at a time."""
+        parts = [self(values[at : at + size]) for at in range(0, len(values), size)]
+        return np.concatenate(parts)

@@ -1,0 +1,1 @@
+"""Interformer encoder: three seconds of motion in, the probability of each gesture out."""

@@ -1,0 +1,93 @@
+"""Configurations of the classifier."""
+
+from dataclasses import dataclass
+
+from agent_server.domain.gesture import GESTURES
+from agent_server.domain.motion import CLASSIFIED_FRAMES
+from agent_server.domain.skeleton import CORE_JOINTS
+from agent_server.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkConfig:
+    """Shape of the network.
+
+    Attributes:
+        frames: Frames in.
+        joints: Joints of the skeleton.
+        classes: Probabilities out.
+        patch: Frames that make one token.
+        features: Features of one coordinate of one joint; a token has joints * 3 * features.
+        layers: Number of encoder layers.
+        heads: Heads of the temporal attention.
+        dropout: Share of units left out in training.
+    """
+
+    frames: int = CLASSIFIED_FRAMES
+    joints: int = CORE_JOINTS
+    classes: int = len(GESTURES)
+    patch: int = 5
+    features: int = 4
+    layers: int = 3
+    heads: int = 4
+    dropout: float = 0.1
+
+    def __post_init__(self) -> None:
+        if self.frames % self.patch:
+            raise ConfigError(
+                f"frames is {self.frames}, which patch {self.patch} does not divide: "
+                "choose a divisor"
+            )
+        if self.width % self.heads:
+            raise ConfigError(
+                f"a token has {self.width} features, which heads {self.heads} does not divide: "
+                "choose a divisor"
+            )
+
+    @property
+    def tokens(self) -> int:
+        """Tokens along time."""
+        return self.frames // self.patch
+
+    @property
+    def width(self) -> int:
+        """Features of a token."""
+        return self.joints * 3 * self.features
+
+
+@dataclass(frozen=True, slots=True)
+class TrainConfig:
+    """How to train.
+
+    Attributes:
+        network: Shape of the network.
+        steps: Updates.
+        batch: Windows an update.
+        learning_rate: Peak rate (AdamW, warm-up, then a cosine to zero).
+        weight_decay: Of all weights.
+        smoothing: Share of the label that is spread over all classes.
+        predicted: Share of windows that end in predicted frames; the rest end in true ones.
+        idle: Share of idle windows in a batch.
+        ema: Decay of the averaged weights.
+        validate_every: Updates between two validations.
+        synthetic_sequences: Takes of virtual people to train on.
+    """
+
+    network: NetworkConfig = NetworkConfig()
+    steps: int = 8_000
+    batch: int = 64
+    learning_rate: float = 1e-3
+    weight_decay: float = 0.02
+    smoothing: float = 0.02
+    predicted: float = 0.75
+    idle: float = 0.4
+    ema: float = 0.998
+    validate_every: int = 500
+    synthetic_sequences: int = 2_000
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.predicted <= 1:
+            raise ConfigError(f"predicted is {self.predicted}: choose a share from 0 to 1")
+
+
+CONFIGS: dict[str, TrainConfig] = {"server": TrainConfig()}

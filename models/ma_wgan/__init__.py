@@ -1,0 +1,1 @@
+"""Manifold-aware Wasserstein GAN: one second of motion in, the next two out."""

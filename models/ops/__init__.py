@@ -1,0 +1,1 @@
+"""Differentiable twins of ``agent_server.geometry``, and what only training needs."""

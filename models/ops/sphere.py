@@ -1,0 +1,67 @@
+"""The unit sphere in torch: exp and log map, safe in values and gradients at the poles.
+
+Vectors are flat: the last axis holds all coordinates.
+"""
+
+import torch
+
+TINY = 1e-12
+NEAR = 1e-4
+"""Below this angle in radians the series replace the quotients, which lose all digits."""
+LANES = 16
+
+
+def _dot(a: torch.Tensor, b: torch.Tensor) -> torch.Tensor:
+    """Inner product over the last axis, which stays with length 1.
+
+    A product of matrices and no sum(): onnxruntime then gives a row of a batch the bits that it
+    has alone. Where one of the two has no batch axis it comes first, for the same reason.
+    """
+    return (a.unsqueeze(-2) @ b.unsqueeze(-1)).squeeze(-1)
+
+
+def _sinc(angle: torch.Tensor) -> torch.Tensor:
+    """sin(angle) / angle, with its limit 1 at zero."""
+    near = angle < NEAR
+    safe = torch.where(near, torch.ones_like(angle), angle)
+    return torch.where(near, 1.0 - angle * angle / 6.0, torch.sin(safe) / safe)
+
+
+def project(vector: torch.Tensor, base: torch.Tensor) -> torch.Tensor:
+    """The part of ``vector`` (..., D) that is tangent to the sphere at ``base`` (..., D)."""
+    return vector - _dot(base, vector) * base
+
+
+def exp(tangent: torch.Tensor, base: torch.Tensor) -> torch.Tensor:
+    """The point reached from ``base`` along ``tangent``; both (..., D)."""
+    angle = torch.sqrt(_dot(tangent, tangent) + TINY**2)
+    # A full vector register a row: onnxruntime's sine rounds its leftovers differently, and
+    # the bits of a row must not depend on where in the batch it lies.
+    lanes = angle.expand(*angle.shape[:-1], LANES)
+    return torch.cos(lanes)[..., :1] * base + _sinc(lanes)[..., :1] * tangent
+
+
+def log(point: torch.Tensor, base: torch.Tensor) -> torch.Tensor:
+    """The tangent vector at ``base`` whose exp is ``point``; both (..., D).
+
+    The angle comes from atan2, which keeps its digits where arccos has none left, so the
+    published clipping of the cosine is not needed. Antipodal points have no unique answer
+    and give zero.
+    """
+    cosine = _dot(base, point)
+    across = point - cosine * base
+    sine = torch.sqrt(_dot(across, across) + TINY**2)
+    return torch.atan2(sine, cosine) / sine * across
+
+
+def karcher_mean(points: torch.Tensor, steps: int = 32, tolerance: float = 1e-9) -> torch.Tensor:
+    """Karcher mean of ``points`` (N, D) by gradient descent from their normalised average."""
+    mean = points.mean(0)
+    mean = mean / mean.norm().clamp_min(TINY)
+    for _ in range(steps):
+        step = log(points, mean).mean(0)
+        mean = exp(step, mean)
+        mean = mean / mean.norm()
+        if float(step.norm()) < tolerance:
+            break
+    return mean

@@ -1,0 +1,1 @@
+"""What every training run shares: seeds, averaged weights, checkpoints, progress."""
