@@ -10,6 +10,7 @@ from agent_server import __version__
 from agent_server.cli.bench import bench
 from agent_server.cli.convert import convert
 from agent_server.cli.demo import demo
+from agent_server.cli.recover import recover
 from agent_server.cli.replay import replay
 from agent_server.cli.serve import serve
 from agent_server.errors import AgentServerError
@@ -21,7 +22,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, serve, replay, convert):
+for command in (demo, serve, replay, convert, recover):
     app.command()(command)
 app.add_typer(bench)
 

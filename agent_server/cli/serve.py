@@ -2,7 +2,10 @@
 
 import json
 import socket
+from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import Console
 
 from agent_server.cli.options import (
@@ -21,11 +24,15 @@ def serve(
     config: ConfigOption = None,
     host: HostOption = None,
     port: PortOption = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Record every session into a file of this folder."),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Take sensors, renderers and monitors until stopped."""
     settings = settings_with(config, host, port)
-    hub = build_hub(settings, load_models())
+    hub = build_hub(settings, load_models(), record)
     run(_serve(hub, bind(settings), as_json=as_json))
 
 

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 import secrets
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from contextlib import asynccontextmanager
 
 from agent_server import __version__
@@ -13,7 +13,7 @@ from agent_server.protocol import messages as m
 from agent_server.protocol.connection import CLOSE_GOING_AWAY
 from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Client
-from agent_server.service.journal import NoJournal
+from agent_server.service.journal import Journal, NoJournal
 from agent_server.service.session import Session
 from agent_server.service.worker import InferenceWorker, Models
 
@@ -34,14 +34,23 @@ class Hub:
         rules: The room's rules, the same for all sessions.
         models: The models, shared by all sessions.
         clock: Where to read the time.
+        open_journal: Where a session of a given id is written down; None writes nothing.
     """
 
-    def __init__(self, settings: Settings, rules: Rules, models: Models, clock: Clock) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        rules: Rules,
+        models: Models,
+        clock: Clock,
+        open_journal: Callable[[str], Journal] | None = None,
+    ) -> None:
         self.settings = settings
         self.clock = clock
         self.models = models
         self.epoch = secrets.token_hex(4)
         self._rules = rules
+        self._open_journal = open_journal
         self._worker = InferenceWorker(models)
         self._sessions: dict[str, Session] = {}
         self._tasks: dict[str, asyncio.Task[None]] = {}
@@ -139,7 +148,7 @@ class Hub:
             self._worker,
             self.clock,
             self.epoch,
-            NoJournal(),
+            NoJournal() if self._open_journal is None else self._open_journal(session_id),
         )
         self._sessions[session_id] = session
         self._tasks[session_id] = self._group.create_task(
@@ -170,7 +179,6 @@ class Hub:
     def _close(self, session_id: str, code: int, reason: str) -> None:
         session = self._sessions.pop(session_id)
         self._endings.pop(session_id, None)
-        for client in session.audience.clients:
-            client.outbox.close(code, reason)
+        session.close(code, reason)
         self._tasks.pop(session_id).cancel()
         log.info("session %s: closed: %s", session_id, reason)

@@ -1,6 +1,6 @@
 """Where a session is written down as it happens, or not.
 
-:class:`agent_server.recording.writer.RecordingWriter` is one.
+:class:`agent_server.service.recorder.Recorder` is one.
 """
 
 from typing import Protocol
@@ -44,6 +44,10 @@ class Journal(Protocol):
         """A command was issued."""
         ...
 
+    def close(self) -> None:
+        """The session is over."""
+        ...
+
 
 class NoJournal:
     """Writes nothing down."""
@@ -67,4 +71,7 @@ class NoJournal:
         """Do nothing."""
 
     def append_command(self, command: CommandMessage) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
         """Do nothing."""

@@ -188,6 +188,12 @@ class Session:
             group.create_task(self._work(), name=f"{self.id}: jobs")
             group.create_task(self._tick(), name=f"{self.id}: ticks")
 
+    def close(self, code: int, reason: str) -> None:
+        """Send all clients away and end the recording."""
+        for client in self.audience.clients:
+            client.outbox.close(code, reason)
+        self._journal.close()
+
     async def _work(self) -> None:
         while True:
             await self._wake.wait()

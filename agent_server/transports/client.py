@@ -87,7 +87,12 @@ async def join(
     address = f"{base}/v1/sessions/{session}/{role}"
     try:
         socket = await connect(
-            address, subprotocols=[Subprotocol(subprotocol)], compression=None, max_size=None
+            address,
+            subprotocols=[Subprotocol(subprotocol)],
+            compression=None,
+            max_size=None,
+            # A client that has stopped reading would otherwise wait long for a farewell.
+            close_timeout=1.0,
         )
     except (OSError, WebSocketException, TimeoutError) as error:
         raise ConnectionFailed(f"cannot connect to {address}: {error}") from error

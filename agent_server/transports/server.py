@@ -4,6 +4,7 @@ import asyncio
 import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 from pathlib import Path
 
 import uvicorn
@@ -16,6 +17,7 @@ from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
 from agent_server.scene.rulebook import Rules
 from agent_server.scene.rules import default_rules, load_rules
 from agent_server.service.hub import Hub
+from agent_server.service.recorder import recorder
 from agent_server.service.worker import Models
 from agent_server.transports.app import create_app
 
@@ -36,13 +38,23 @@ def load_models(bundles: Path | None = None) -> Models:
     return Models(OnnxPredictor(folder / PREDICTOR), OnnxClassifier(folder / CLASSIFIER))
 
 
-def build_hub(settings: Settings, models: Models) -> Hub:
+def build_hub(settings: Settings, models: Models, record_to: Path | None = None) -> Hub:
     """Put the sessions' hub together.
+
+    Args:
+        settings: All settings.
+        models: The models.
+        record_to: Folder for a recording of every session; None records nothing.
 
     Raises:
         RuleError: If the rule file is wrong.
     """
-    return Hub(settings, load_room(settings, models), models, SystemClock())
+    clock = SystemClock()
+    open_journal = None
+    if record_to is not None:
+        record_to.mkdir(parents=True, exist_ok=True)
+        open_journal = partial(recorder, record_to, models=models, clock=clock)
+    return Hub(settings, load_room(settings, models), models, clock, open_journal)
 
 
 def load_room(settings: Settings, models: Models) -> Rules:

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 import re
-from typing import get_args
+from typing import TypeGuard, get_args
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
@@ -28,7 +28,7 @@ def websocket_router(hub: Hub) -> APIRouter:
     @router.websocket("/v1/sessions/{session_id}/{role}")
     async def endpoint(websocket: WebSocket, session_id: str, role: str) -> None:
         codec = _agree(websocket)
-        await websocket.accept(subprotocol=codec and codec.subprotocol)
+        await websocket.accept(subprotocol=None if codec is None else codec.subprotocol)
         link = _Link(websocket, codec or CODECS[m.SUBPROTOCOL_JSON])
         offered = websocket.scope.get("subprotocols", [])
         if codec is None and offered:
@@ -44,7 +44,7 @@ def websocket_router(hub: Hub) -> APIRouter:
                 "bad_session_id",
                 "a session id has 1 to 64 letters, digits, '.', '_' and '-'",
             )
-        elif role not in get_args(m.Role):
+        elif not _is_role(role):
             await link.dismiss(
                 c.CLOSE_BAD_HELLO,
                 "unknown_role",
@@ -54,6 +54,10 @@ def websocket_router(hub: Hub) -> APIRouter:
             await _Visit(hub, link, session_id, role).run()
 
     return router
+
+
+def _is_role(name: str) -> TypeGuard[m.Role]:
+    return name in get_args(m.Role)
 
 
 def _agree(websocket: WebSocket) -> Codec | None:
@@ -80,8 +84,8 @@ class _Link:
         event = await self._websocket.receive()
         if event["type"] == "websocket.disconnect":
             raise WebSocketDisconnect(event.get("code", c.CLOSE_NORMAL))
-        text = event.get("text")
-        return text if text is not None else event["bytes"]
+        data: Wire = event["bytes"] if event.get("text") is None else event["text"]
+        return data
 
     async def send(self, message: m.Message) -> None:
         data = self.codec.encode(message)

@@ -20,7 +20,7 @@ from agent_server.protocol.connection import (
     CLOSE_WRONG_VERSION,
 )
 from agent_server.protocol.convert import skeleton_to_message
-from agent_server.transports.client import ConnectionFailed, send_paced
+from agent_server.transports.client import ConnectionFailed, join, send_paced
 from tests.support.bodies import stream
 from tests.support.live import all_decisions, live, next_of
 from tests.support.models import fake_models
@@ -174,8 +174,8 @@ async def test_bad_input_that_persists_costs_the_connection():
             await sensor.send(m.AckMessage("x", "done"))
         errors = []
         with pytest.raises(ConnectionFailed, match=str(CLOSE_TOO_MANY_ERRORS)):
-            async for message in sensor:
-                errors.append(message)
+            while True:
+                errors.append(await next_of(sensor, m.ErrorMessage))
         assert [error.fatal for error in errors] == [False] * 5 + [True]
 
 
@@ -286,7 +286,7 @@ async def test_a_body_that_leaves_ends_attention_even_when_nothing_comes_any_mor
         await send_paced(sensor, GESTURE, 20.0)
         resumed = await next_of(monitor, m.CommandMessage)
         while resumed.reaction != "resume_work":
-            resumed = await next_of(monitor, m.CommandMessage, timeout=15)
+            resumed = await next_of(monitor, m.CommandMessage, within_s=15)
         assert resumed.cause == "body_lost"
         assert server.hub.sessions["s"].counters["bodies_lost"] == 1
 
@@ -296,8 +296,6 @@ async def test_a_client_that_finds_no_server_is_told():
         url = server.url
     with pytest.raises(ConnectionFailed, match="cannot connect"):
         async with live() as other:
-            del other
-            from agent_server.transports.client import join
-
+            assert other.url != url
             async with join(url, "s", "sensor"):
                 pass

@@ -28,21 +28,22 @@ class Live:
 
 
 @asynccontextmanager
-async def live(models=None, settings=None):
+async def live(models=None, settings=None, open_journal=None):
     """Serve on a free port while the context lasts."""
     settings = settings or Settings()
     server = msgspec.structs.replace(settings.server, port=0)
     settings = msgspec.structs.replace(settings, server=server)
     models = models or fake_models()
-    hub = Hub(settings, default_rules(models.classifier.labels), models, SystemClock())
+    rules = default_rules(models.classifier.labels)
+    hub = Hub(settings, rules, models, SystemClock(), open_journal)
     listener = bind(settings)
     async with serving(hub, listener):
         yield Live(address(listener), hub)
 
 
-async def next_of(client, kind, timeout=5.0):
+async def next_of(client, kind, within_s=5.0):
     """The next message of a type; others are passed over."""
-    async with asyncio.timeout(timeout):
+    async with asyncio.timeout(within_s):
         async for message in client:
             if isinstance(message, kind):
                 return message

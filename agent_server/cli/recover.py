@@ -1,0 +1,34 @@
+"""``agent-server recover``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import msgspec
+import typer
+from rich.console import Console
+
+from agent_server.cli.options import JsonOption
+from agent_server.recording.recover import recover as recover_recording
+
+
+def recover(
+    damaged: Annotated[
+        Path, typer.Argument(metavar="IN", help="A truncated or damaged recording.")
+    ],
+    output: Annotated[Path, typer.Argument(metavar="OUT", help="File to create.")],
+    as_json: JsonOption = False,
+) -> None:
+    """Save what is whole of a recording, and say what was lost."""
+    report = recover_recording(damaged, output)
+    if as_json:
+        print(msgspec.json.encode(report).decode())
+        return
+    console = Console(highlight=False)
+    console.print(f"{output}: {report.records} records saved")
+    if report.complete:
+        console.print("nothing was lost")
+    else:
+        console.print(
+            f"lost: {report.damaged_records} damaged chunks, {report.missing_records} records "
+            f"known to be missing, {report.lost_bytes} bytes at the end"
+        )
