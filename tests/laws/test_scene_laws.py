@@ -17,7 +17,7 @@ from agent_server.scene.room import Room
 from agent_server.scene.rulebook import RESUME_WORK
 from agent_server.scene.rules import default_rules
 
-laws = settings(derandomize=True, deadline=None, max_examples=200)
+laws = settings(derandomize=True, deadline=None, max_examples=120)
 
 RULES = default_rules()
 ALL_PREEMPT = dataclasses.replace(

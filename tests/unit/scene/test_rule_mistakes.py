@@ -21,6 +21,18 @@ MISTAKES = {
         24,
         "unknown gesture 'idle'; known gestures: point, shrug",
     ),
+    "ungated gesture": (
+        "attention_s = 5\n",
+        'attention_s = 5\nungated = ["point",\n"shurg"]\n',
+        4,
+        "settings.ungated[1]: unknown gesture 'shurg'; did you mean 'shrug'?",
+    ),
+    "ungated idle": (
+        "attention_s = 5\n",
+        'attention_s = 5\nungated = ["idle"]\n',
+        3,
+        "settings.ungated[0]: unknown gesture 'idle'; known gestures: point, shrug",
+    ),
     "object in when": (
         "when = { lamp",
         "when = { lmap",

@@ -63,6 +63,18 @@ def test_in_the_packaged_rules_discomfort_comes_before_hello():
     assert all(rules[gesture][0].reaction.priority > hello for gesture in DISCOMFORTS)
 
 
+def test_in_the_packaged_rules_only_hello_needs_no_uncomfortable_face():
+    rules = default_rules()
+    assert not rules.is_gated(HELLO)
+    assert all(rules.is_gated(gesture) for gesture in DISCOMFORTS)
+
+
+def test_every_gesture_is_gated_unless_the_file_says_otherwise():
+    assert parse_rules(SMALL, ["point"], name="my.toml").is_gated("point")
+    text = small("attention_s = 5\n", 'attention_s = 5\nungated = ["point"]\n')
+    assert not parse_rules(text, ["point"], name="my.toml").is_gated("point")
+
+
 def test_the_packaged_room_starts_with_every_discomfort_but_hot():
     objects = default_rules().objects
     initial = {thing.name: thing.initial for thing in objects.values() if thing.states}
