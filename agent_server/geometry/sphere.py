@@ -20,6 +20,7 @@ import numpy as np
 
 from agent_server.domain.arrays import Float64
 from agent_server.errors import InvalidInput
+from agent_server.geometry.norm import norm
 
 _UNIT_TOLERANCE = 1e-6
 
@@ -36,16 +37,16 @@ def normalise(vectors: Float64) -> Float64:
     Raises:
         InvalidInput: If a vector is zero: every point is as near.
     """
-    norms = _norm(vectors)
+    norms = norm(vectors)
     if not (norms > 0.0).all():
         raise InvalidInput(
             "vectors holds a zero vector, which has no direction: leave it out",
             field="vectors",
             code="zero_vector",
         )
-    # Scaled first, so that the second norm of a tiny or huge vector has all its digits.
+    # Twice, because a subnormal norm has few digits.
     scaled = vectors / norms
-    return scaled / _norm(scaled)
+    return scaled / norm(scaled)
 
 
 def distance(a: Float64, b: Float64) -> Float64:
@@ -80,7 +81,7 @@ def exp(tangent: Float64, base: Float64) -> Float64:
         InvalidInput: If ``base`` is not on the sphere.
     """
     _require_unit("base", base)
-    angle = _norm(tangent)
+    angle = norm(tangent)
     # numpy's sinc is sin(pi x) / (pi x), with its limit at zero.
     return np.cos(angle) * base + np.sinc(angle / np.pi) * tangent
 
@@ -136,12 +137,12 @@ def karcher_mean(
     """
     _require_unit("points", points)
     average = points.mean(axis=-2)
-    if not (_norm(average) > _UNIT_TOLERANCE).all():
+    if not (norm(average) > _UNIT_TOLERANCE).all():
         raise _no_mean("their average is zero")
     mean = normalise(average)
     for _ in range(max_iterations):
         gradient = log(points, mean[..., None, :]).mean(axis=-2)
-        if (_norm(gradient) <= tolerance).all():
+        if (norm(gradient) <= tolerance).all():
             return mean
         mean = normalise(exp(gradient, mean))
     raise _no_mean(f"no convergence to {tolerance:g} rad in {max_iterations} steps")
@@ -157,7 +158,7 @@ def _no_mean(why: str) -> InvalidInput:
 
 
 def _require_unit(field: str, points: Float64) -> None:
-    worst = np.abs(_norm(points) - 1.0).max(initial=0.0)
+    worst = np.abs(norm(points) - 1.0).max(initial=0.0)
     if not worst <= _UNIT_TOLERANCE:
         raise InvalidInput(
             f"{field} holds a vector whose norm differs from 1 by {worst:g}: normalise it first",
@@ -167,7 +168,7 @@ def _require_unit(field: str, points: Float64) -> None:
 
 
 def _angle(a: Float64, b: Float64) -> Float64:
-    angle: Float64 = 2.0 * np.arctan2(_norm(a - b), _norm(a + b))
+    angle: Float64 = 2.0 * np.arctan2(norm(a - b), norm(a + b))
     return angle
 
 
@@ -178,11 +179,6 @@ def _tangent_unit(vectors: Float64, base: Float64) -> Float64:
     """
     for _ in range(2):
         part = vectors - (vectors * base).sum(axis=-1, keepdims=True) * base
-        norm = _norm(part)
-        vectors = np.divide(part, norm, out=np.zeros_like(part), where=norm > 0.0)
+        length = norm(part)
+        vectors = np.divide(part, length, out=np.zeros_like(part), where=length > 0.0)
     return vectors
-
-
-def _norm(vectors: Float64) -> Float64:
-    norms: Float64 = np.hypot.reduce(vectors, axis=-1, keepdims=True)
-    return norms

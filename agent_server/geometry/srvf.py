@@ -18,6 +18,7 @@ import numpy as np
 
 from agent_server.domain.arrays import Float64
 from agent_server.errors import InvalidInput
+from agent_server.geometry.norm import norm
 
 
 def srvf(curve: Float64) -> Float64:
@@ -33,7 +34,7 @@ def srvf(curve: Float64) -> Float64:
         InvalidInput: If the curve has fewer than two points.
     """
     steps = _steps(curve)
-    return _divide(steps, np.sqrt(_norm(steps)))
+    return _divide(steps, np.sqrt(norm(steps)))
 
 
 def inverse_srvf(q: Float64, start: Float64) -> Float64:
@@ -47,7 +48,7 @@ def inverse_srvf(q: Float64, start: Float64) -> Float64:
         Shape (..., T + 1, D); its first point is ``start``.
     """
     first = np.broadcast_to(start, (*q.shape[:-2], q.shape[-1]))[..., None, :]
-    steps = q * _norm(q)
+    steps = q * norm(q)
     return np.concatenate([first, first + np.cumsum(steps, axis=-2)], axis=-2)
 
 
@@ -63,7 +64,7 @@ def curve_length(curve: Float64) -> Float64:
     Raises:
         InvalidInput: If the curve has fewer than two points.
     """
-    length: Float64 = _norm(_steps(curve)).sum(axis=(-2, -1))
+    length: Float64 = norm(_steps(curve)).sum(axis=(-2, -1))
     return length
 
 
@@ -82,7 +83,7 @@ def to_sphere(curve: Float64) -> tuple[Float64, Float64]:
         InvalidInput: If the curve has fewer than two points.
     """
     steps = _steps(curve)
-    speed = _norm(steps)
+    speed = norm(steps)
     length = speed.sum(axis=-2, keepdims=True)
     # Two roots, because the product of a tiny speed and a tiny length may underflow.
     return _divide(steps, np.sqrt(speed) * np.sqrt(length)), length[..., 0, 0]
@@ -110,12 +111,6 @@ def _steps(curve: Float64) -> Float64:
             code="too_short",
         )
     return np.diff(curve, axis=-2)
-
-
-def _norm(vectors: Float64) -> Float64:
-    """Length of each vector, shape (..., T, 1), that neither underflows nor overflows."""
-    norms: Float64 = np.hypot.reduce(vectors, axis=-1, keepdims=True)
-    return norms
 
 
 def _divide(vectors: Float64, by: Float64) -> Float64:

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from agent_server.domain.arrays import Float32
 from agent_server.domain.skeleton import CORE_JOINTS, CoreFrame, CoreJoint, SkeletonFrame
+from agent_server.domain.stamp import NS_PER_S
 from agent_server.skeleton.formats import get_format
 
 _CONFIDENCE = 3
+_FORGET_NS = NS_PER_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,13 +104,15 @@ class Retargeter:
     """Retargets one body's frames and stands in for joints that are not tracked.
 
     A joint of confidence 0, or with a number that is not finite, keeps its last known position
-    with confidence 0. Another body, or another format, starts from nothing.
+    with confidence 0. Another body or another format starts from nothing, and so does a body that
+    comes back after more than a second: it may be anywhere by then.
     """
 
-    __slots__ = ("_last", "_source", "_unseen")
+    __slots__ = ("_last", "_source", "_stamp_ns", "_unseen")
 
     def __init__(self) -> None:
         self._source: tuple[str, int] | None = None
+        self._stamp_ns = 0
         self._last: Float32 = np.zeros((CORE_JOINTS, 4), dtype=np.float32)
         self._unseen: NDArray[np.bool_] | None = None
 
@@ -123,9 +127,11 @@ class Retargeter:
         """
         core = retarget(frame)
         source = (frame.format, frame.body_id)
-        if source != self._source:
+        stamp_ns = frame.originating_ns
+        if source != self._source or stamp_ns - self._stamp_ns > _FORGET_NS:
             self._source = source
             self._unseen = np.ones(CORE_JOINTS, dtype=np.bool_)
+        self._stamp_ns = stamp_ns
         # On so few numbers Python's own arithmetic is faster than an array call; their sum is
         # finite only where every one is.
         numbers = core.ravel().tolist()
@@ -137,7 +143,7 @@ class Retargeter:
         self._last = core
         if self._unseen is not None:
             return None
-        return CoreFrame(frame.originating_ns, frame.body_id, core[:, :3], core[:, _CONFIDENCE])
+        return CoreFrame(stamp_ns, frame.body_id, core[:, :3], core[:, _CONFIDENCE])
 
     def _fill(self, core: Float32) -> Float32:
         tracked = np.isfinite(core).all(axis=1) & (core[:, _CONFIDENCE] > 0.0)
