@@ -99,7 +99,7 @@ def fail(
                 jump = _jump(seen[begin, wrist] - seen[begin, elbow], weakness.jump_m, rng)
                 shake = rng.standard_normal((stop - begin, 3)) * 0.15 * np.linalg.norm(jump)
                 seen[span, wrist] += jump + shake
-                seen[span, elbow] += rng.uniform(0.1, 0.5) * jump
+                seen[span, elbow] += rng.uniform(0.1, 0.8) * jump
             if owned:
                 confidence[span, wrist] = 0.5
                 if rng.random() < 0.3:

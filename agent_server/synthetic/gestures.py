@@ -50,9 +50,12 @@ def _at_face(
     fingers: Vector,
     pitch: float,
     bow: Vector = _FORWARD,
+    median_s: float = 0.78,
 ) -> None:
     """Raises hands to the face, holds them there, lowers them."""
-    arrival = pen.bring(hands, "head", centre, spread, swivel, fingers=fingers, bow=bow)
+    arrival = pen.bring(
+        hands, "head", centre, spread, swivel, fingers=fingers, bow=bow, median_s=median_s
+    )
     release = arrival + pen.hold()
     _fidget(pen, hands, arrival - 0.2, release)
     end = pen.lower(hands, release)
@@ -63,7 +66,7 @@ def _at_face(
 
 
 def _eyes_both(pen: Pen) -> None:
-    place, spread = (0.115, -0.10, -0.14), (0.027, 0.034, 0.022)
+    place, spread = (0.122, -0.08, -0.15), (0.022, 0.030, 0.018)
     swivel = (80.0, 14.0) if pen.chance(0.10) else (32.0, 9.0)
     _at_face(pen, BOTH, place, spread, swivel, fingers=(-0.7, 0.6, 0.3), pitch=6)
 
@@ -96,7 +99,7 @@ def _forearm(pen: Pen) -> None:
 
 
 def _ears_palms(pen: Pen) -> None:
-    place, spread = (0.145, -0.015, -0.06), (0.02, 0.03, 0.04)
+    place, spread = (0.15, 0.0, -0.085), (0.018, 0.028, 0.03)
     swivel, fingers = (57.0, 15.0), (-0.3, 0.8, 0.5)
     _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=5, bow=_SIDEWAYS)
 

@@ -23,7 +23,7 @@ class _Rest:
 
 _FOLDED = _Rest("chest", (-0.03, -0.30, -0.20), (0.02, 0.03, 0.02), 42, (-0.9, 0.0, 0.0))
 _STANDING: dict[str, _Rest] = {
-    "hanging": _Rest("upright", (0.215, -0.585, -0.015), (0.025, 0.018, 0.03), 30),
+    "hanging": _Rest("upright", (0.215, -0.605, -0.02), (0.025, 0.018, 0.03), 30),
     "bent": _Rest("upright", (0.22, -0.50, -0.12), (0.03, 0.04, 0.04), 28),
     "clasped": _Rest("pelvis", (0.05, 0.03, -0.17), (0.015, 0.04, 0.03), 50, (-0.8, 0.0, 0.0)),
     "behind": _Rest("pelvis", (0.06, 0.08, 0.16), (0.02, 0.04, 0.02), 55, (-0.8, 0.0, 0.0)),
@@ -44,7 +44,7 @@ _SEATED: dict[str, _Rest] = {
 _OVERLAPPING = frozenset({"folded", "clasped", "behind", "desk_folded", "belly", "lap"})
 _Pairs = dict[tuple[str, str], float]
 _STANDING_PAIRS: _Pairs = {
-    ("hanging", "hanging"): 10.0,
+    ("hanging", "hanging"): 13.0,
     ("bent", "bent"): 2.0,
     ("clasped", "clasped"): 1.5,
     ("behind", "behind"): 0.8,

@@ -101,14 +101,14 @@ class Pen:
         x, y, z = np.asarray(centre) + offset
         return float(x), float(y), float(z)
 
-    def seconds(self, median: float, spread: float = 0.22) -> float:
+    def seconds(self, median: float, spread: float = 0.25) -> float:
         """A duration of this person, log-normal around ``median``."""
         drawn = median * np.exp(np.clip(self.rng.normal(0, spread), -2 * spread, 2 * spread))
         return float(drawn / self.person.tempo)
 
     def hold(self) -> float:
         """How long a gesture is held: 0.6 to 4 s, mostly 1 to 2."""
-        return float(np.clip(np.exp(self.rng.normal(np.log(1.4), 0.5)), 0.6, 4.0))
+        return float(np.clip(np.exp(self.rng.normal(np.log(1.3), 0.5)), 0.6, 4.0))
 
     # ------------------------------------------------------------------ hands
 

@@ -83,10 +83,10 @@ KINECT_V2 = Sensor(
     rate_hz=30.0,
     tick_jitter_s=0.0015,
     lost_frames=0.006,
-    fit_m=0.010,
+    fit_m=0.009,
     wander_m=0.006,
     wander_s=0.35,
-    jitter_m=0.0012,
+    jitter_m=0.0005,
     depth_factor=1.3,
     depth_scale=0.02,
     lag_s=0.030,
@@ -99,10 +99,10 @@ KINECT_V1 = Sensor(
     rate_hz=30.0,
     tick_jitter_s=0.0030,
     lost_frames=0.012,
-    fit_m=0.014,
-    wander_m=0.009,
+    fit_m=0.012,
+    wander_m=0.008,
     wander_s=0.30,
-    jitter_m=0.0012,
+    jitter_m=0.0003,
     depth_factor=1.2,
     depth_scale=0.03,
     lag_s=0.040,
@@ -236,7 +236,7 @@ def _sense(body: BodyMotion, sensor: Sensor, rng: np.random.Generator) -> tuple[
     seen += sensor.fit_m * rng.standard_normal((9, 3)) * _SURENESS[:, None] * axes
     exposed = exposure(clean, body)
     far = (clean[..., 2:] / 2.0) ** 2 if sensor.lag_s else 1.0
-    size = (1.0 + 1.2 * exposed[..., None]) * far
+    size = _restlessness(clean, body.times_s, exposed)[..., None] * far
     seen += _wander(n, 9, sensor, rng) * size * _SURENESS[:, None]
     confidence = np.ones((n, 9))
     if sensor.weakness is not None:
@@ -245,6 +245,14 @@ def _sense(body: BodyMotion, sensor: Sensor, rng: np.random.Generator) -> tuple[
         seen = _low_pass(seen, sensor)
     seen += sensor.jitter_m * rng.standard_normal((n, 9, 3)) * far * axes
     return seen, confidence
+
+
+def _restlessness(clean: Float64, times_s: Float64, exposed: Float64) -> Float64:
+    """How strong slow errors are, shape (T, 9): little at rest, more in motion and hidden."""
+    step = np.zeros(clean.shape[:2])
+    step[1:] = np.linalg.norm(np.diff(clean, axis=0), axis=2)
+    period = np.diff(times_s, prepend=times_s[0] - 1.0)
+    return np.asarray(0.10 + 0.8 * np.clip(step / period[:, None], 0.0, 1.0) + 0.9 * exposed)
 
 
 _SURENESS = np.array([0.9, 0.7, 0.6, 0.8, 1.0, 1.2, 0.8, 1.0, 1.2])
@@ -264,7 +272,7 @@ def _wander(n: int, joints: int, sensor: Sensor, rng: np.random.Generator) -> Fl
     held = np.maximum.accumulate(np.where(change, np.arange(n)[:, None], 0), axis=0)
     steps = rng.standard_normal((n, joints, 3))[held, np.arange(joints)]
     axes = np.array([1.0, 1.0, sensor.depth_factor])
-    return np.asarray(sensor.wander_m * (0.85 * smooth + 0.4 * steps) * axes)
+    return np.asarray(sensor.wander_m * (1.5 * smooth + 0.35 * steps) * axes)
 
 
 def _low_pass(seen: Float64, sensor: Sensor) -> Float64:

@@ -28,14 +28,17 @@ class Offsets:
         neck: In the chest's frame, from the neck's base.
         navel: In the chest's frame, from the navel.
         shoulder: Outwards, up and back in the chest's frame, from the shoulder joint.
-        wrist_short: Share of the forearm by which the wrist lies short of the joint.
+        upper_arm: Length of the upper arm as the sensor believes it, against the true one; its
+            elbow is drawn most of the way to where that puts it.
+        forearm: The same for the forearm; the wrist gives way less.
     """
 
     head: tuple[float, float, float] = (0.0, 0.0, 0.0)
     neck: tuple[float, float, float] = (0.0, 0.0, 0.0)
     navel: tuple[float, float, float] = (0.0, 0.0, 0.0)
     shoulder: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    wrist_short: float = 0.0
+    upper_arm: float = 1.0
+    forearm: float = 1.0
 
 
 CORE_PLACES: Mapping[Places, Offsets] = MappingProxyType(
@@ -45,13 +48,15 @@ CORE_PLACES: Mapping[Places, Offsets] = MappingProxyType(
             head=(0.0, 0.012, -0.010),
             navel=(0.0, 0.025, 0.0),
             shoulder=(-0.022, -0.062, 0.0),
-            wrist_short=0.07,
+            upper_arm=0.79,
+            forearm=0.91,
         ),
         "kinect_v2": Offsets(
             neck=(0.0, -0.050, 0.0),
             navel=(0.0, 0.105, 0.0),
             shoulder=(-0.014, -0.040, 0.0),
-            wrist_short=0.03,
+            upper_arm=0.89,
+            forearm=0.96,
         ),
         "webcam": Offsets(head=(0.0, -0.01, 0.0), neck=(0.0, -0.045, 0.0)),
     }
@@ -144,11 +149,24 @@ def place_core(body: BodyMotion, places: Places) -> Float64:
     for side, sign in enumerate(SIDE_SIGNS):
         first = BodyJoint.RIGHT_SHOULDER if side else BodyJoint.LEFT_SHOULDER
         shift = np.array(offsets.shoulder) * (sign, 1.0, 1.0)
-        elbow, wrist = joints[:, first + 1], joints[:, first + 2]
-        out[:, 3 + 3 * side] = joints[:, first] + turn(body.chest, shift)
-        out[:, 4 + 3 * side] = elbow
-        out[:, 5 + 3 * side] = wrist + offsets.wrist_short * (elbow - wrist)
+        shoulder, elbow, wrist = (joints[:, first + k] for k in range(3))
+        seen = shoulder + turn(body.chest, shift)
+        out[:, 3 + 3 * side] = seen
+        out[:, 4 + 3 * side] = _drawn(seen, elbow, offsets.upper_arm, shoulder, 0.8)
+        out[:, 5 + 3 * side] = _drawn(out[:, 4 + 3 * side], wrist, offsets.forearm, elbow, 0.5)
     return out
+
+
+def _drawn(
+    root: Float64, end: Float64, share: float, true_root: Float64, stiffness: float
+) -> Float64:
+    """The end of a bone whose length the sensor believes to be ``share`` of the true one."""
+    if share == 1.0:
+        return end
+    bone = end - root
+    length = np.linalg.norm(bone, axis=1)
+    believed = share * np.linalg.norm(end - true_root, axis=1)
+    return np.asarray(root + bone * ((believed / length) ** stiffness)[:, None])
 
 
 def place_table(body: BodyMotion, places: Places) -> Float64:
