@@ -27,6 +27,7 @@ from agent_server.recording import topics
 from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
 from agent_server.recording.records import CoreEntry, CoreRecord, LabelRecord
 from agent_server.recording.scan import (
+    RECOVER_HINT,
     DamagedError,
     RawRecord,
     open_file,
@@ -238,7 +239,7 @@ def open_recording(path: Path) -> Recording:
             f"{path} is no recording of this server: it has no metadata {METADATA_NAME!r}"
         )
     if statistics is None or len(chunks) != statistics.chunk_count:
-        raise RecordingError(f"{path} has no index; `agent-server recover IN OUT` writes one")
+        raise RecordingError(f"{path} has no index of its chunks; {RECOVER_HINT}")
     chunks.sort(key=lambda chunk: chunk.chunk_start_offset)
     return Recording(
         path,

@@ -24,7 +24,7 @@ from mcap.writer import MCAP0_MAGIC
 from agent_server.errors import RecordingError
 
 MAGIC = MCAP0_MAGIC
-RECOVER_HINT = "`agent-server recover IN OUT` saves what is whole"
+RECOVER_HINT = "`agent-server recover IN OUT` saves what is whole of it"
 
 _PREFIX = struct.Struct("<BQ")  # opcode, length of what follows
 _FOOTER_SIZE = _PREFIX.size + 20

@@ -4,7 +4,6 @@ The first line is a header, every further one a body at an instant; docs/kinect-
 describes them, with an example.
 """
 
-import math
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +18,12 @@ from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import MAX_STAMP_NS, NS_PER_S, to_ns
 from agent_server.errors import InvalidInput
 from agent_server.skeleton.formats import JointFormat, get_format
-from agent_server.skeleton.readers.source import SourceRecording, fold_body_id, read_bytes
+from agent_server.skeleton.readers.source import (
+    MAX_COORDINATE,
+    SourceRecording,
+    fold_body_id,
+    read_bytes,
+)
 
 T = TypeVar("T")
 Joint = Annotated[tuple[float, ...], Meta(min_length=3, max_length=4)]
@@ -158,8 +162,8 @@ class _LineReader:
         return joints
 
     def _joint(self, number: int, field: str, values: Joint) -> Joint:
-        if not all(map(math.isfinite, values)):
-            raise _wrong(self._path, number, field, f"{values} is not finite")
+        if not all(abs(value) <= MAX_COORDINATE for value in values):
+            raise _wrong(self._path, number, field, f"{values} is far too large")
         if len(values) == 3:
             return (*values, 1.0)
         if not 0.0 <= values[3] <= 1.0:

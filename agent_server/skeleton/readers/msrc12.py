@@ -16,7 +16,13 @@ import numpy as np
 
 from agent_server.domain.arrays import Float32, Float64
 from agent_server.errors import InvalidInput
-from agent_server.skeleton.readers.source import Mark, SourceRecording, read_bytes, single_body
+from agent_server.skeleton.readers.source import (
+    MAX_COORDINATE,
+    Mark,
+    SourceRecording,
+    read_bytes,
+    single_body,
+)
 
 FORMAT = "kinect_v1"
 JOINTS = 20
@@ -97,10 +103,11 @@ def _table(path: Path) -> Float64:
             f"state), got {table.shape[1]}",
             code="wrong_joint_count",
         )
-    finite = np.isfinite(table).all(axis=1)
-    if not finite.all():
+    usable = (np.abs(table[:, 1:]) <= MAX_COORDINATE).all(axis=1) & np.isfinite(table[:, 0])
+    if not usable.all():
         raise InvalidInput(
-            f"{path}, line {int(finite.argmin()) + 1}: a number is not finite", code="not_finite"
+            f"{path}, line {int(usable.argmin()) + 1}: a number is not finite, or far too large",
+            code="not_finite",
         )
     return table.reshape(-1, COLUMNS)
 

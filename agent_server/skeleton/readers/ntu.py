@@ -18,7 +18,13 @@ from agent_server.domain.arrays import Float32
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import to_ns
 from agent_server.errors import InvalidInput
-from agent_server.skeleton.readers.source import Mark, SourceRecording, fold_body_id, read_bytes
+from agent_server.skeleton.readers.source import (
+    MAX_COORDINATE,
+    Mark,
+    SourceRecording,
+    fold_body_id,
+    read_bytes,
+)
 
 FORMAT = "ntu"
 RATE_HZ = 30
@@ -125,13 +131,14 @@ def _joints(text: _Lines) -> Float32:
         field = f"joints[{index}]"
         values = text.take(field, JOINT_NUMBERS)
         try:
-            joints[index, :3] = [float(value) for value in values[:3]]
-            joints[index, 3] = _CONFIDENCE[values[-1]]
+            place = [float(value) for value in values[:3]]
+            confidence = _CONFIDENCE[values[-1]]
         except ValueError:
             raise text.wrong(field, f"x, y, z are {values[:3]}") from None
         except KeyError:
             raise text.wrong(field, f"tracking state {values[-1]!r} is none of 0, 1, 2") from None
-        if not np.isfinite(joints[index]).all():
-            raise text.wrong(field, f"x, y, z are {values[:3]}: not finite")
+        if not all(abs(value) <= MAX_COORDINATE for value in place):
+            raise text.wrong(field, f"x, y, z are {values[:3]}: not finite, or far too large")
+        joints[index] = *place, confidence
     joints.flags.writeable = False
     return joints

@@ -11,6 +11,9 @@ from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import MAX_STAMP_NS
 from agent_server.errors import RecordingError
 
+MAX_COORDINATE = 1e6
+"""No coordinate of a body is larger, whatever the table's unit. NaN is not smaller either."""
+
 
 @dataclass(frozen=True, slots=True)
 class Mark:

@@ -12,7 +12,12 @@ import numpy as np
 from agent_server.domain.stamp import to_ns
 from agent_server.errors import InvalidInput
 from agent_server.skeleton.readers.mat5 import read_mat5
-from agent_server.skeleton.readers.source import Mark, SourceRecording, single_body
+from agent_server.skeleton.readers.source import (
+    MAX_COORDINATE,
+    Mark,
+    SourceRecording,
+    single_body,
+)
 
 FORMAT = "utd_mhad"
 RATE_HZ = 30
@@ -47,9 +52,9 @@ def read_utd_mhad(path: Path) -> SourceRecording:
             field=VARIABLE,
             code="wrong_shape",
         )
-    if not np.isfinite(track).all():
+    if not (np.abs(track) <= MAX_COORDINATE).all():
         raise InvalidInput(
-            f"{path}: {VARIABLE} holds numbers that are not finite",
+            f"{path}: {VARIABLE} holds numbers that are not finite, or far too large",
             field=VARIABLE,
             code="not_finite",
         )

@@ -3,13 +3,16 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 from mcap.records import ChunkIndex
 from mcap.stream_reader import StreamReader
+from mcap.writer import IndexType, Writer
 
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import RecordingError
+from agent_server.protocol.messages import Affect
 from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
 from agent_server.recording.reader import Record, open_recording
 from agent_server.recording.recover import recover
@@ -229,6 +232,44 @@ def sink(path: Path, metadata: dict[str, str] | None) -> Iterator[McapSink]:
         opened.metadata(METADATA_NAME, metadata)
     yield opened
     opened.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "what"),
+    [
+        ({"index_types": IndexType.METADATA}, "has no index of its chunks"),
+        ({"use_statistics": False}, "has no index of its chunks"),
+        (
+            {
+                "index_types": IndexType.NONE,
+                "use_statistics": False,
+                "repeat_channels": False,
+                "repeat_schemas": False,
+                "use_summary_offsets": False,
+            },
+            "there is no summary",
+        ),
+    ],
+    ids=["no index", "no statistics", "no summary"],
+)
+def test_a_file_without_an_index_gets_one_by_recovering(
+    tmp_path: Path, options: dict[str, Any], what: str
+) -> None:
+    """As some other tools write it."""
+    path = tmp_path / "bare.mcap"
+    affect = b'{"type":"affect","originating_ns":4,"valence":1.0,"arousal":0.0}'
+    with path.open("wb") as file:
+        writer = Writer(file, **options)
+        writer.start()
+        writer.add_metadata(METADATA_NAME, METADATA.to_strings())
+        schema = writer.register_schema("A", "jsonschema", b"{}")
+        channel = writer.register_channel("/affect", "json", schema)
+        writer.add_message(channel, 4, affect, 4)
+        writer.finish()
+    with pytest.raises(RecordingError, match=rf"bare\.mcap.*{what}.*recover"):
+        open_recording(path)
+    (record,) = saved(path)
+    assert record.message == Affect(4, 1.0, 0.0)
 
 
 def test_an_mcap_file_of_somebody_else_is_refused(tmp_path: Path) -> None:

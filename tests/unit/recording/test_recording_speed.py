@@ -1,5 +1,6 @@
 """Recording must not cost a live session its time. Measured values are several times better."""
 
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -42,5 +43,6 @@ def test_a_kinect_is_written_and_read_far_faster_than_it_sends(tmp_path: Path) -
     def read(attempt: int) -> None:
         assert sum(1 for _ in open_recording(tmp_path / f"{attempt}.mcap")) == COUNT
 
-    assert best_s(write) / COUNT < 60e-6
-    assert COUNT / best_s(read) > 20_000
+    slack = 4 if sys.gettrace() else 1  # coverage follows every line
+    assert best_s(write) / COUNT < 60e-6 * slack
+    assert best_s(read) / COUNT < 50e-6 * slack

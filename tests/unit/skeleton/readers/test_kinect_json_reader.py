@@ -91,6 +91,7 @@ def test_a_line_without_a_tracked_joint_is_left_out(tmp_path: Path) -> None:
         ),
         ({"time_s": 0, "joints": {"Head": [0, 0]}}, r"line 2, joints.*length >= 3"),
         ({"time_s": 0, "joints": {"Head": ["a", 0, 0]}}, r"line 2, joints.*Expected `float`"),
+        ({"time_s": 0, "joints": {"Head": [1e39, 0, 0]}}, r"joints\.Head: .* is far too large"),
         ({"time_s": 0, "joints": {"Head": [0, 0, 0, 2]}}, r"joints\.Head: confidence 2"),
         ({"time_s": 0, "joints": [*TABLE[:-1], [0, 0, 0, -1]]}, r"joints\[24\]: confidence -1"),
         ({"time_s": 0, "body_id": -1, "joints": TABLE}, "line 2, body_id"),
@@ -107,6 +108,13 @@ def test_a_body_twice_at_one_time_is_refused(tmp_path: Path) -> None:
     line = {"time_s": 0.5, "body_id": 1, "joints": TABLE}
     path = write(tmp_path, {"format": "kinect_v2"}, line, {**line, "body_id": 2}, line)
     with pytest.raises(InvalidInput, match="line 4, body_id: body 1 is at this time in line 2 too"):
+        read_kinect_json(path)
+
+
+def test_a_frame_beyond_all_time_is_refused(tmp_path: Path) -> None:
+    header = {"format": "kinect_v2", "rate_hz": 1}
+    path = write(tmp_path, header, {"frame": 10**8, "joints": TABLE})
+    with pytest.raises(InvalidInput, match="line 2, frame: 100000000 is too large"):
         read_kinect_json(path)
 
 

@@ -80,6 +80,7 @@ def edited(folder: Path, line: int, text: str) -> Path:
         (5, "1 2 3", r"line 5, joints\[0\]: expected 12 numbers, got 3"),
         (6, "1 y 3 0 0 0 0 0 0 0 0 2", r"line 6, joints\[1\]: x, y, z are"),
         (7, "1 nan 3 0 0 0 0 0 0 0 0 2", r"line 7, joints\[2\]: .*not finite"),
+        (7, "1 1e39 3 0 0 0 0 0 0 0 0 2", r"line 7, joints\[2\]: .*far too large"),
         (8, "1 2 3 0 0 0 0 0 0 0 0 5", r"line 8, joints\[3\]: tracking state '5'"),
     ],
 )
