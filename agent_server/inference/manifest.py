@@ -1,7 +1,7 @@
 """The manifest of a model bundle: what a model expects, what it is, and how it was made.
 
-A bundle is a folder ``NAME/`` with ``model.onnx``, ``manifest.json``, ``golden.npz`` (inputs
-and the outputs that the model must give for them) and ``CARD.md``.
+A bundle is a folder ``NAME/`` with ``model.onnx``, ``manifest.json``, ``golden.npz`` (an input
+and the output that the model must give for it, under their names in the graph) and ``CARD.md``.
 """
 
 import hashlib

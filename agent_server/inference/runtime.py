@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import onnxruntime as ort
@@ -84,7 +83,7 @@ class OnnxModel:
     def _replay_golden(self, path: Path) -> None:
         try:
             with np.load(path, allow_pickle=False) as golden:
-                given, expected = golden["input"], golden["output"]
+                given, expected = golden[self._input], golden[self._output[0]]
         except (OSError, KeyError, ValueError) as error:
             raise BundleError(f"{path} cannot be read: {error}") from error
         try:
@@ -135,8 +134,3 @@ def _expect(folder: Path, manifest: Manifest, frames: Sequence[int]) -> None:
             f"{folder}: frames in and out are {got}, the server needs {tuple(frames)} "
             f"of {CORE_JOINTS} joints"
         )
-
-
-def describe(model: OnnxModel) -> dict[str, Any]:
-    """What an operator wants to know of a loaded model."""
-    return {"name": model.name, "task": model.manifest.task, "sha256": model.sha256}
