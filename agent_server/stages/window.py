@@ -6,6 +6,7 @@ import numpy as np
 
 from agent_server.domain.motion import FRAME_NS, SEEN_FRAMES, Window
 from agent_server.domain.skeleton import CoreFrame
+from agent_server.skeleton.mirror import MirrorDetector
 from agent_server.skeleton.quality import assess
 
 
@@ -19,13 +20,14 @@ class WindowStage:
     def __init__(self, hop: int) -> None:
         self._hop = hop
         self._frames: deque[CoreFrame] = deque(maxlen=SEEN_FRAMES)
-        self._until_next = SEEN_FRAMES
+        self._until_next = self._fresh = SEEN_FRAMES
         self._next_index = 0
+        self._mirror = MirrorDetector()
 
     def reset(self) -> None:
         """Forget the frames, after a gap or when another body is followed."""
         self._frames.clear()
-        self._until_next = SEEN_FRAMES
+        self._until_next = self._fresh = SEEN_FRAMES
 
     def push(self, frame: CoreFrame) -> Window | None:
         """Take the next frame on the 40 ms grid.
@@ -37,11 +39,13 @@ class WindowStage:
         self._until_next -= 1
         if self._until_next:
             return None
-        self._until_next = self._hop
         positions = np.stack([f.positions for f in self._frames])
         confidence = np.stack([f.confidence for f in self._frames])
         positions.flags.writeable = False
         confidence.flags.writeable = False
+        # Only what the last window did not show is new evidence.
+        mirrored = self._mirror.update(positions[-self._fresh :], confidence[-self._fresh :])
+        self._until_next = self._fresh = self._hop
         index, self._next_index = self._next_index, self._next_index + 1
         return Window(
             index=index,
@@ -50,5 +54,5 @@ class WindowStage:
             end_ns=frame.stamp_ns,
             positions=positions,
             confidence=confidence,
-            quality=assess(positions, confidence),
+            quality=assess(positions, confidence, mirrored=mirrored),
         )

@@ -4,6 +4,7 @@ import pytest
 
 from agent_server.config import SubjectSettings, WindowSettings
 from agent_server.domain.motion import BodyLost, Window
+from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import InvalidInput
 from agent_server.stages.perceive import Perception
 from tests.support.bodies import frame, stream
@@ -91,3 +92,15 @@ def test_a_body_with_a_joint_that_was_never_seen_gives_no_window():
 def test_ids_that_never_end_do_not_fill_the_memory():
     perception, _ = perceive([frame(index, body_id=index) for index in range(500)])
     assert len(perception._seen_ns) <= 64
+
+
+def test_a_mirrored_stream_is_reported_in_the_windows_quality():
+    def mirrored(one):
+        joints = one.joints.copy()
+        joints[:, 0] *= -1
+        return SkeletonFrame(one.originating_ns, one.body_id, one.format, joints)
+
+    _, found = perceive(stream(6))
+    assert not any("mirrored" in window.quality.warnings for window in found)
+    _, found = perceive([mirrored(one) for one in stream(6)])
+    assert "mirrored" in found[-1].quality.warnings
