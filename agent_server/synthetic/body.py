@@ -232,9 +232,8 @@ def move_body(
     """Computes all landmarks in the camera frame."""
     n, scale = len(times_s), person.scale
     joints = np.empty((n, len(BodyJoint), 3))
-    pitch, roll, yaw = (
-        controls.trunk + (placement.slouch_rad, placement.list_rad, placement.heading_rad)
-    ).T
+    at_rest = np.array([placement.slouch_rad, placement.list_rad, placement.heading_rad])
+    pitch, roll, yaw = (controls.trunk + at_rest).T
     ground = rotation(np.zeros(n), np.zeros(n), np.full(n, placement.heading_rad))
     low = rotation(0.45 * pitch, 0.5 * roll, placement.heading_rad + 0.25 * controls.trunk[:, 2])
     chest = rotation(pitch, roll, yaw)

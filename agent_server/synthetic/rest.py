@@ -89,6 +89,13 @@ def sample_rest(
     return left, right
 
 
+def hanging(rng: np.random.Generator) -> tuple[Reach, Reach]:
+    """Both hands hang down."""
+    shared = rng.standard_normal(3)
+    rest = _STANDING["hanging"]
+    return _draw(rng, rest, shared, in_front=False), _draw(rng, rest, shared, in_front=False)
+
+
 def _draw(rng: np.random.Generator, rest: _Rest, shared: Float64, *, in_front: bool) -> Reach:
     """A place near the typical one; a hand on top of the other one lies further out."""
     own = 0.8 * np.clip(shared, -2, 2) + 0.5 * np.clip(rng.standard_normal(3), -2, 2)

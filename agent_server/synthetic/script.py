@@ -205,12 +205,20 @@ class Pen:
 
     def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.9) -> float:
         """Brings hands back to rest; returns when the last one is there."""
-        duration = self.seconds(median_s)
+        return self._rest_at(hands, self.rest, start_s, self.seconds(median_s))
+
+    def settle(self, hands: Hands, rest: tuple[Reach, Reach]) -> float:
+        """Lets hands come to rest elsewhere; returns when the last one is there."""
+        return self._rest_at(hands, rest, self.start_s, self.seconds(1.1))
+
+    def _rest_at(
+        self, hands: Hands, rests: tuple[Reach, Reach], start_s: float, duration_s: float
+    ) -> float:
         end = start_s
         for side in hands:
-            rest = self.rest[side]
+            rest = rests[side]
             begin = start_s + (self._delay[1 - side] if len(hands) > 1 else 0.0)
-            mine = duration * self.uniform(0.9, 1.1)
+            mine = duration_s * self.uniform(0.9, 1.1)
             bow = self.around((0.06, 0.0, -0.09), 0.04)
             swivel = float(np.degrees(rest.swivel_rad))
             arrival = self.reach(
