@@ -1,0 +1,171 @@
+/** Puts the page together: telemetry into the store, the store into the panels and the view. */
+
+import { browserHost } from "./net/browser.ts";
+import { MonitorConnection } from "./net/connection.ts";
+import { readDirectory, type Directory } from "./net/directory.ts";
+import { AffectPanel } from "./panels/affect.ts";
+import { GesturePanel } from "./panels/gestures.ts";
+import { Inspector } from "./panels/inspector.ts";
+import { LogPanel } from "./panels/log.ts";
+import { Notice } from "./panels/notice.ts";
+import { RoomPanel } from "./panels/room.ts";
+import { Counters, StatusStrip } from "./panels/status.ts";
+import type { Place } from "./place.ts";
+import type { Row } from "./state/log.ts";
+import { Store } from "./state/store.ts";
+import { summaryOf, type Summary } from "./state/summary.ts";
+import { affectNow, decisionNow, isFresh, problemOf, sensorState } from "./state/view.ts";
+import { sentenceCase } from "./state/words.ts";
+import type { Stage } from "./scene3d/stage.ts";
+import { need, setText } from "./ui/dom.ts";
+
+declare const __PAGE_VERSION__: string;
+
+const DIRECTORY_EVERY_MS = 2_500;
+/** Panels follow new telemetry at once, and time alone this often. */
+const REFRESH_MS = 200;
+
+const byId = (id: string): HTMLElement => need<HTMLElement>(`#${id}`);
+
+export class App {
+  readonly #place: Place;
+  readonly #stage: Stage | null;
+  readonly #store = new Store();
+  readonly #connection: MonitorConnection;
+  readonly #strip = new StatusStrip(byId("session"), byId("lamps"), byId("gauges"));
+  readonly #counters = new Counters(byId("counters"), byId("server"));
+  readonly #gestures = new GesturePanel(byId("bars"), byId("gesture-now"));
+  readonly #affect = new AffectPanel(byId("affect"), byId("gate-mode"));
+  readonly #room = new RoomPanel(byId("room"), byId("modes"));
+  readonly #log = new LogPanel(byId("rows"), byId("announcer"), (row) => this.#inspect(row));
+  readonly #inspector = new Inspector(byId("inspector"), () => this.#closeInspector());
+  readonly #notice = new Notice(byId("notice"), () => this.#connection.retryNow());
+  readonly #spoken = byId("spoken");
+  #directory: Directory = { kind: "unknown" };
+  #opened: number | null = null;
+  #now: number;
+  #drawn = { revision: -1, at: Number.NEGATIVE_INFINITY };
+  #shownPose: unknown = null;
+  #shownForecast: unknown = null;
+
+  /** @param now The page's clock, in milliseconds. */
+  constructor(place: Place, stage: Stage | null, now: number) {
+    this.#place = place;
+    this.#stage = stage;
+    this.#now = now;
+    document.title = `${place.session} \u2013 Agent server`;
+    byId("reset-view").addEventListener("click", () => stage?.resetView());
+    this.#connection = new MonitorConnection(
+      place.monitorUrl,
+      { name: "agent-server-page", version: __PAGE_VERSION__, token: place.token },
+      browserHost,
+      {
+        onMessage: (message) => this.#store.apply(message, this.#now),
+        onStatus: ({ phase }) => {
+          this.#drawn.revision = -1;
+          if (phase === "live" || phase === "waiting") void this.#readDirectory();
+        },
+      },
+    );
+  }
+
+  start(): void {
+    this.#connection.start();
+    setInterval(() => {
+      const isLive = this.#connection.status.phase === "live";
+      if (!isLive || this.#sensor !== "live") void this.#readDirectory();
+    }, DIRECTORY_EVERY_MS);
+  }
+
+  /** Let the page's clock reach `now`, and show what there is to show. */
+  advance(now: number): void {
+    const dtMs = Math.max(0, now - this.#now);
+    this.#now = now;
+    this.#showBody(dtMs);
+    const { revision } = this.#store;
+    if (revision === this.#drawn.revision && now - this.#drawn.at < REFRESH_MS) return;
+    this.#drawn = { revision, at: now };
+    this.#renderPanels();
+  }
+
+  summary(): Summary {
+    return summaryOf({
+      store: this.#store,
+      status: this.#connection.status,
+      problem: this.#problem,
+      sensor: this.#sensor,
+      pictures: this.#stage?.pictures ?? null,
+      now: this.#now,
+    });
+  }
+
+  get #sensor() {
+    return sensorState(this.#store, this.#directory, this.#place, this.#now);
+  }
+
+  get #problem() {
+    return problemOf(this.#connection.status, this.#directory, this.#sensor, this.#place);
+  }
+
+  #showBody(dtMs: number): void {
+    const stage = this.#stage;
+    if (stage === null) return;
+    const { pose, forecast } = this.#store;
+    const joints = isFresh(pose, this.#now) ? pose.value.joints : null;
+    if (joints !== this.#shownPose) stage.setPose(joints);
+    this.#shownPose = joints;
+    const motion = joints !== null && isFresh(forecast, this.#now) ? forecast.value.positions : null;
+    if (motion !== this.#shownForecast) stage.setForecast(motion);
+    this.#shownForecast = motion;
+    stage.step(dtMs);
+  }
+
+  #renderPanels(): void {
+    const store = this.#store;
+    const now = this.#now;
+    const { status } = this.#connection;
+    const decision = decisionNow(store, now);
+    const body = decision?.decision ?? null;
+    const rate = this.#sensor === "live" ? store.poseRateHz : null;
+    const latency = decision?.timing.total_ms ?? null;
+    this.#strip.render(this.#place.session, status, this.#sensor, rate, latency);
+    this.#gestures.render(store.welcome?.labels ?? [], store.welcome?.decide?.enter ?? null, body);
+    this.#affect.render(
+      store.welcome?.gate ?? null,
+      affectNow(store, now),
+      store.affect,
+      body?.gate ?? null,
+      now,
+    );
+    this.#room.render(store.scene?.value ?? null, store.running, store.changedAt, now);
+    this.#log.render(store.log.rows);
+    this.#counters.render(store.stats, store.welcome);
+    this.#notice.render(this.#problem, browserHost.now());
+    const isHeld = body !== null && body.gesture !== "idle" && body.outcome !== "unsure";
+    setText(this.#spoken, isHeld ? sentenceCase(body.gesture) : "");
+  }
+
+  #inspect(row: Row): void {
+    this.#opened = row.key;
+    this.#log.mark(row.key);
+    this.#inspector.open(row, this.#store.welcome);
+  }
+
+  #closeInspector(): void {
+    this.#inspector.close();
+    this.#log.mark(null);
+    if (this.#opened !== null) this.#log.focus(this.#opened);
+    this.#opened = null;
+  }
+
+  async #readDirectory(): Promise<void> {
+    const { directoryUrl, token } = this.#place;
+    const before = this.#directory;
+    this.#directory = await readDirectory(directoryUrl, token, (url, init) => fetch(url, init));
+    // A server that has just come back need not wait for the next attempt.
+    if (before.kind === "unreachable" && this.#directory.kind === "listed") {
+      this.#connection.retryNow();
+    }
+    this.#drawn.revision = -1;
+  }
+}

@@ -1,0 +1,90 @@
+/** One bar a class: its probability, the threshold, and which gesture is held to be going on. */
+
+import type { Decision } from "../protocol.ts";
+import { sentenceCase } from "../state/words.ts";
+import { h, setAttribute, setState, setText } from "../ui/dom.ts";
+
+interface Bar {
+  readonly root: HTMLElement;
+  readonly fill: HTMLElement;
+  readonly value: HTMLElement;
+}
+
+export class Bars {
+  readonly root = h("div", { class: "bars" });
+  readonly #bars = new Map<string, Bar>();
+  #shape = "";
+
+  render(
+    labels: readonly string[],
+    threshold: number | null,
+    probabilities: Readonly<Record<string, number>> | null,
+    gesture: string | null,
+  ): void {
+    const shape = JSON.stringify([labels, threshold]);
+    if (shape !== this.#shape) {
+      this.#shape = shape;
+      this.#build(labels, threshold);
+    }
+    for (const [label, bar] of this.#bars) {
+      const share = probabilities?.[label] ?? 0;
+      const percent = probabilities === null ? "\u2013" : (share * 100).toFixed(0);
+      bar.fill.style.transform = `scaleX(${share.toFixed(3)})`;
+      setText(bar.value, percent);
+      setState(bar.root, "now", label !== gesture ? "no" : label === "idle" ? "idle" : "yes");
+      setState(bar.root, "over", `${threshold !== null && share >= threshold}`);
+      setAttribute(bar.root, "aria-valuenow", (share * 100).toFixed(0));
+    }
+  }
+
+  #build(labels: readonly string[], threshold: number | null): void {
+    this.#bars.clear();
+    this.root.replaceChildren();
+    for (const label of labels) {
+      const fill = h("span", { class: "fill" });
+      const track = h("span", { class: "track" }, fill);
+      if (threshold !== null) {
+        const tick = h("span", { class: "tick" });
+        tick.style.left = `${threshold * 100}%`;
+        track.append(tick);
+      }
+      const value = h("span", { class: "value" });
+      const root = h(
+        "div",
+        {
+          class: "bar",
+          role: "meter",
+          "aria-label": `Probability of ${label}, in percent`,
+          "aria-valuemin": "0",
+          "aria-valuemax": "100",
+        },
+        h("span", { class: "name" }, sentenceCase(label)),
+        track,
+        value,
+      );
+      this.#bars.set(label, { root, fill, value });
+      this.root.append(root);
+    }
+  }
+}
+
+export class GesturePanel {
+  readonly #bars = new Bars();
+  readonly #hint: HTMLElement;
+
+  constructor(root: HTMLElement, hint: HTMLElement) {
+    this.#hint = hint;
+    root.append(this.#bars.root);
+  }
+
+  render(labels: readonly string[], threshold: number | null, decision: Decision | null): void {
+    this.#bars.render(
+      labels,
+      threshold,
+      decision?.probabilities ?? null,
+      decision?.gesture ?? null,
+    );
+    const mark = threshold === null ? "" : `percent, counts from ${Math.round(threshold * 100)}`;
+    setText(this.#hint, mark);
+  }
+}

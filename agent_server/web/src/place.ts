@@ -1,0 +1,33 @@
+/** Where the page was opened: which session it asks for, and where its server is. */
+
+export interface Place {
+  readonly session: string;
+  readonly token: string | null;
+  /** Whether time passes only in `window.agentPage.step`. */
+  readonly isStepped: boolean;
+  readonly monitorUrl: string;
+  readonly sensorUrl: string;
+  readonly directoryUrl: string;
+}
+
+/**
+ * Read the address of the page: `?session=NAME`, `?step`, `#token=SECRET`. The server's paths are
+ * relative to the page's own folder, so that both may live under any prefix.
+ */
+export function placeOf(address: string): Place {
+  const page = new URL(address);
+  const session = page.searchParams.get("session") || "demo";
+  const socket = (role: string): string => {
+    const url = new URL(`v1/sessions/${encodeURIComponent(session)}/${role}`, page);
+    url.protocol = page.protocol === "https:" ? "wss:" : "ws:";
+    return url.href;
+  };
+  return {
+    session,
+    token: new URLSearchParams(page.hash.slice(1)).get("token"),
+    isStepped: page.searchParams.has("step"),
+    monitorUrl: socket("monitor"),
+    sensorUrl: socket("sensor"),
+    directoryUrl: new URL("v1/sessions", page).href,
+  };
+}

@@ -1,0 +1,167 @@
+/** What the panels show, derived from store, connection and directory at one instant. */
+
+import type { Directory } from "../net/directory.ts";
+import type { Fault, Status } from "../net/connection.ts";
+import type { Place } from "../place.ts";
+import type { DecisionMessage } from "../protocol.ts";
+import type { Store, Timed } from "./store.ts";
+
+/** Telemetry of a kind that has not come for this long counts as gone. */
+export const STALE_MS = 1_500;
+
+export type SensorState = "unknown" | "none" | "no_body" | "live";
+
+export interface Affect {
+  readonly valence: number;
+  readonly arousal: number;
+  /** False while no face is in use: the values are those of the last face. */
+  readonly isFresh: boolean;
+}
+
+/** Something that keeps the page from showing a live session, and what to do about it. */
+export interface Problem {
+  readonly kind:
+    | "connecting"
+    | "unreachable"
+    | "lost"
+    | "refused"
+    | "version"
+    | "no_sensor"
+    | "no_body";
+  readonly title: string;
+  readonly text: string;
+  /** When the next attempt starts on the connection's clock, or null. */
+  readonly retryAt: number | null;
+}
+
+
+/** Whether there is a value that still speaks of the present. */
+export function isFresh<T>(timed: Timed<T> | null, now: number): timed is Timed<T> {
+  return timed !== null && now - timed.at <= STALE_MS;
+}
+
+export function sensorState(
+  store: Store,
+  directory: Directory,
+  place: Place,
+  now: number,
+): SensorState {
+  if (isFresh(store.pose, now)) return "live";
+  if (directory.kind !== "listed") return "unknown";
+  const mine = directory.sessions.find(({ id }) => id === place.session);
+  return mine?.sensor === true ? "no_body" : "none";
+}
+
+export function affectNow(store: Store, now: number): Affect | null {
+  const latest = store.affect.at(-1) ?? null;
+  if (latest === null) return null;
+  const { valence, arousal, originating_ns } = latest.value;
+  const decision = store.decision?.value.decision;
+  const isRefused =
+    decision !== undefined && decision.end_ns > originating_ns && decision.gate.valence === null;
+  return { valence, arousal, isFresh: isFresh(latest, now) && !isRefused };
+}
+
+/** The decision that still speaks of the present, or null. */
+export function decisionNow(store: Store, now: number): DecisionMessage | null {
+  return isFresh(store.decision, now) ? store.decision.value : null;
+}
+
+export function problemOf(
+  status: Status,
+  directory: Directory,
+  sensor: SensorState,
+  place: Place,
+): Problem | null {
+  const { phase, fault, retryAt } = status;
+  if (phase !== "live") {
+    if (fault === null) {
+      return {
+        kind: "connecting",
+        title: "Connecting",
+        text: `Asking for session \u201c${place.session}\u201d at ${place.monitorUrl}.`,
+        retryAt,
+      };
+    }
+    return { ...explain(fault, directory, place), retryAt };
+  }
+  if (sensor === "none") {
+    return {
+      kind: "no_sensor",
+      title: "Waiting for a sensor",
+      text:
+        `Session \u201c${place.session}\u201d has no sensor yet. ` +
+        `Connect one to ${place.sensorUrl}, or send a recording there with agent-server replay.`,
+      retryAt: null,
+    };
+  }
+  if (sensor === "no_body") {
+    return {
+      kind: "no_body",
+      title: "Nobody in view",
+      text: "The sensor is connected, but it sees no body at the moment.",
+      retryAt: null,
+    };
+  }
+  return null;
+}
+
+function explain(fault: Fault, directory: Directory, place: Place): Omit<Problem, "retryAt"> {
+  switch (fault.kind) {
+    case "version":
+      return {
+        kind: "version",
+        title: "Versions do not match",
+        text:
+          `The server refused this page: ${fault.message}. Reload the page; ` +
+          "if that does not help, it comes from another release than the server.",
+      };
+    case "refused":
+      return {
+        kind: "refused",
+        title: "The server refused this page",
+        text: `${fault.message} (${fault.code}).`,
+      };
+    case "silent":
+      return {
+        kind: "lost",
+        title: "The server has gone silent",
+        text: "The connection was open, but nothing came through it any more.",
+      };
+    case "lost":
+      return {
+        kind: "lost",
+        title: "Connection lost",
+        text: `The server closed the connection (${fault.reason || `code ${fault.code}`}).`,
+      };
+    case "unreachable":
+      return unreachable(directory, place);
+  }
+}
+
+function unreachable(directory: Directory, place: Place): Omit<Problem, "retryAt"> {
+  if (directory.kind === "refused" && (directory.status === 401 || directory.status === 403)) {
+    return {
+      kind: "refused",
+      title: "The server wants a token",
+      text: "Add #token=\u2026 to the address of this page, with the token that the server was started with.",
+    };
+  }
+  if (directory.kind === "listed") {
+    const others = directory.sessions.map(({ id }) => id);
+    return {
+      kind: "refused",
+      title: "The server did not open the session",
+      text:
+        `It answers, but not at ${place.monitorUrl}. ` +
+        (others.length > 0 && !others.includes(place.session)
+          ? `It has these sessions: ${others.join(", ")}.`
+          : "Is the session\u2019s name right, and is there room for one more?"),
+    };
+  }
+  return {
+    kind: "unreachable",
+    title: "The server cannot be reached",
+    text: `Nothing answers at ${place.monitorUrl}. Start it with agent-server serve; this page connects by itself.`,
+  };
+}

@@ -1,0 +1,57 @@
+/** Names of the protocol in words for people. */
+
+import type { Decision } from "../protocol.ts";
+
+const OUTCOMES: Readonly<Record<string, string>> = {
+  command: "Command",
+  idle: "Idle",
+  unsure: "Unsure",
+  cooling_down: "Cooling down",
+  handled: "Already handled",
+  gated: "Held back",
+  busy: "Busy",
+  nothing_to_do: "Nothing to do",
+};
+
+/** `close_window` -> `Close window`. */
+export function sentenceCase(name: string): string {
+  const words = name.replaceAll("_", " ");
+  return words.charAt(0).toUpperCase() + words.slice(1);
+}
+
+export function outcomeWord(outcome: string): string {
+  return OUTCOMES[outcome] ?? sentenceCase(outcome);
+}
+
+/** A decision's reason without the gesture before it, which is shown beside it. */
+export function reasonOf({ gesture, reason }: Pick<Decision, "gesture" | "reason">): string {
+  const prefix = `${gesture}: `;
+  return sentenceCase(reason.startsWith(prefix) ? reason.slice(prefix.length) : reason);
+}
+
+/** Nanoseconds on the session's time line -> `1:04.2`. */
+export function sessionTime(ns: number): string {
+  const tenths = Math.floor(ns / 1e8);
+  const minutes = Math.floor(tenths / 600);
+  const seconds = Math.floor((tenths % 600) / 10);
+  return `${minutes}:${String(seconds).padStart(2, "0")}.${tenths % 10}`;
+}
+
+/** A signed level of affect, with a real minus sign. */
+export function level(value: number): string {
+  const text = Math.abs(value).toFixed(1);
+  return value < 0 && text !== "0.0" ? `\u2212${text}` : text;
+}
+
+/** Milliseconds with as many digits as matter. */
+export function milliseconds(value: number): string {
+  return `${value < 10 ? value.toFixed(1) : value.toFixed(0)} ms`;
+}
+
+export function percent(share: number): string {
+  return `${Math.round(share * 100)} %`;
+}
+
+export function count(n: number): string {
+  return n.toLocaleString("en");
+}

@@ -1,0 +1,187 @@
+/** A host with a clock that tests own, and messages as a server would send them. */
+
+import type { Host, Listener, Socket, SocketEvents, Status } from "../src/net/connection.ts";
+import type {
+  CommandBody,
+  Decision,
+  DecisionMessage,
+  SceneState,
+  ServerMessage,
+  Welcome,
+} from "../src/protocol.ts";
+
+interface Timer {
+  readonly at: number;
+  readonly callback: () => void;
+}
+
+export class FakeSocket implements Socket {
+  readonly sent: Record<string, unknown>[] = [];
+  isClosed = false;
+  readonly url: string;
+  readonly subprotocol: string;
+  readonly events: SocketEvents;
+
+  constructor(url: string, subprotocol: string, events: SocketEvents) {
+    this.url = url;
+    this.subprotocol = subprotocol;
+    this.events = events;
+  }
+
+  send(text: string): void {
+    this.sent.push(JSON.parse(text) as Record<string, unknown>);
+  }
+
+  close(): void {
+    this.isClosed = true;
+  }
+
+  /** The server speaks. */
+  say(message: object): void {
+    this.events.onText(JSON.stringify(message));
+  }
+}
+
+export class FakeHost implements Host {
+  time = 0;
+  chance = 0.5;
+  /** Set to make the next attempts throw at once. */
+  isForbidden = false;
+  readonly sockets: FakeSocket[] = [];
+  #timers: Timer[] = [];
+
+  open(url: string, subprotocol: string, events: SocketEvents): Socket {
+    if (this.isForbidden) throw new Error("forbidden");
+    const socket = new FakeSocket(url, subprotocol, events);
+    this.sockets.push(socket);
+    return socket;
+  }
+
+  now = (): number => this.time;
+
+  random = (): number => this.chance;
+
+  after(delayMs: number, callback: () => void): () => void {
+    const timer = { at: this.time + delayMs, callback };
+    this.#timers.push(timer);
+    return () => {
+      this.#timers = this.#timers.filter((other) => other !== timer);
+    };
+  }
+
+  /** Let time pass, ringing every timer on the way. */
+  pass(ms: number): void {
+    const end = this.time + ms;
+    for (;;) {
+      const [next] = this.#timers.filter(({ at }) => at <= end).sort((a, b) => a.at - b.at);
+      if (next === undefined) break;
+      this.#timers = this.#timers.filter((other) => other !== next);
+      this.time = next.at;
+      next.callback();
+    }
+    this.time = end;
+  }
+
+  get socket(): FakeSocket {
+    const last = this.sockets.at(-1);
+    if (last === undefined) throw new Error("no socket was opened");
+    return last;
+  }
+}
+
+export class FakeListener implements Listener {
+  readonly messages: ServerMessage[] = [];
+  readonly statuses: Status[] = [];
+
+  onMessage(message: ServerMessage): void {
+    this.messages.push(message);
+  }
+
+  onStatus(status: Status): void {
+    this.statuses.push(status);
+  }
+}
+
+export const SCENE: SceneState = {
+  type: "scene",
+  mode: "working",
+  objects: { window: "open", curtain: "open" },
+};
+
+export const WELCOME: Welcome = {
+  type: "welcome",
+  protocol: "1.0",
+  server: "agent-server",
+  server_version: "0.1.0",
+  session: "demo",
+  role: "monitor",
+  epoch: "first",
+  sequence: 0,
+  heartbeat_s: 5,
+  labels: ["cold", "hot", "loud", "smell", "bright", "hello", "idle"],
+  gate: {
+    mode: "required",
+    enter_valence: -3,
+    enter_arousal: 3,
+    leave_valence: -2,
+    leave_arousal: 2,
+  },
+  models: [],
+  scene: SCENE,
+};
+
+export const COMMAND: CommandBody = {
+  id: "demo-c1",
+  sequence: 1,
+  reaction: "close_window",
+  cause: "cold",
+  steps: [
+    { action: "stand_up", duration_s: 1 },
+    { action: "close", target: "window", duration_s: 2 },
+  ],
+  priority: 2,
+  originating_ns: 1,
+  issued_ns: 2,
+  ttl_ms: 3000,
+};
+
+export function decision(index: number, change: Partial<Decision> = {}): DecisionMessage {
+  return {
+    type: "decision",
+    decision: {
+      id: `demo-${index}`,
+      index,
+      window: index,
+      start_ns: index * 2e8,
+      end_ns: index * 2e8 + 96e7,
+      body_id: 7,
+      models: { predictor: "0123456789ab" },
+      quality: { measured: 1, filled: 0, bone_deviation: 0.02, warnings: [] },
+      forecast: "predictor",
+      forecast_failure: null,
+      probabilities: { cold: 0.1, idle: 0.9 },
+      gesture: "idle",
+      gate: {
+        mode: "required",
+        is_open: false,
+        reason: "the face looks pleased",
+        valence: 2,
+        arousal: 1,
+        age_ms: 40,
+      },
+      scene: null,
+      outcome: "idle",
+      reason: "nothing is going on",
+      command: null,
+      ...change,
+    },
+    timing: {
+      wall: "2024-01-01T00:00:00Z",
+      wait_ms: 0.1,
+      predict_ms: 0.8,
+      classify_ms: 0.5,
+      decide_ms: 0.1,
+      total_ms: 1.6,
+    },
+  };
+}

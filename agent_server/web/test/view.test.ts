@@ -1,0 +1,130 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import type { Fault, Status } from "../src/net/connection.ts";
+import { readDirectory, type Directory } from "../src/net/directory.ts";
+import { BACKOFF_BASE_MS, BACKOFF_CAP_MS, fullJitter } from "../src/net/backoff.ts";
+import { placeOf } from "../src/place.ts";
+import type { SceneState } from "../src/protocol.ts";
+import { COMMAND, SCENE } from "./fakes.ts";
+import { progressOf, type Running } from "../src/state/running.ts";
+import { Store } from "../src/state/store.ts";
+import { problemOf, sensorState, type SensorState } from "../src/state/view.ts";
+import { level, reasonOf, sentenceCase, sessionTime } from "../src/state/words.ts";
+
+const place = placeOf("https://host/some/prefix/?session=lab%201&step#token=a%2Bb");
+
+const listed = (sensor: boolean): Directory => ({
+  kind: "listed",
+  sessions: [{ id: "lab 1", sensor }],
+});
+
+function waiting(fault: Fault): Status {
+  return { phase: "waiting", fault, retryAt: 5, roundTripMs: null };
+}
+
+const live: Status = { phase: "live", fault: null, retryAt: null, roundTripMs: null };
+
+test("the page's address says the session, the token and the server's paths", () => {
+  assert.deepEqual(place, {
+    session: "lab 1",
+    token: "a+b",
+    isStepped: true,
+    monitorUrl: "wss://host/some/prefix/v1/sessions/lab%201/monitor",
+    sensorUrl: "wss://host/some/prefix/v1/sessions/lab%201/sensor",
+    directoryUrl: "https://host/some/prefix/v1/sessions",
+  });
+  const plain = placeOf("http://127.0.0.1:8765/");
+  assert.equal(plain.session, "demo");
+  assert.equal(plain.token, null);
+  assert.equal(plain.monitorUrl, "ws://127.0.0.1:8765/v1/sessions/demo/monitor");
+});
+
+test("the wait is spread over the whole bound and the bound is kept", () => {
+  assert.equal(fullJitter(0, () => 0), 0);
+  assert.equal(fullJitter(0, () => 1), BACKOFF_BASE_MS);
+  assert.equal(fullJitter(3, () => 1), 8 * BACKOFF_BASE_MS);
+  assert.equal(fullJitter(5000, () => 1), BACKOFF_CAP_MS);
+});
+
+test("the sensor is live while poses come, else what the directory says", () => {
+  const store = new Store();
+  assert.equal(sensorState(store, { kind: "unknown" }, place, 0), "unknown");
+  assert.equal(sensorState(store, listed(false), place, 0), "none");
+  assert.equal(sensorState(store, { kind: "listed", sessions: [] }, place, 0), "none");
+  store.apply({ type: "pose", originating_ns: 1, body_id: 1, joints: [] }, 100);
+  assert.equal(sensorState(store, listed(false), place, 1_000), "live");
+  assert.equal(sensorState(store, listed(true), place, 5_000), "no_body");
+});
+
+test("each trouble is named, with the address or the server's own words", () => {
+  const unknown: Directory = { kind: "unknown" };
+  const ask = (status: Status, directory: Directory = unknown, sensor: SensorState = "live") =>
+    problemOf(status, directory, sensor, place);
+  assert.equal(ask(live), null);
+  assert.equal(ask({ ...live, phase: "opening" })?.kind, "connecting");
+  assert.match(ask(live, listed(false), "none")?.text ?? "", /lab%201\/sensor/);
+  assert.equal(ask(live, listed(true), "no_body")?.kind, "no_body");
+  const gone = ask(waiting({ kind: "unreachable" }), { kind: "unreachable" });
+  assert.equal(gone?.kind, "unreachable");
+  assert.match(gone?.text ?? "", /wss:\/\/host/);
+  assert.equal(gone?.retryAt, 5);
+  const version = ask(waiting({ kind: "version", message: "speaks 2.0" }));
+  assert.equal(version?.kind, "version");
+  assert.match(version?.text ?? "", /speaks 2\.0/);
+  assert.match(ask(waiting({ kind: "lost", code: 4429, reason: "full" }))?.text ?? "", /full/);
+  assert.equal(ask(waiting({ kind: "silent" }))?.kind, "lost");
+});
+
+test("a server that answers but opens no session is told from one that is gone", () => {
+  const fault = waiting({ kind: "unreachable" });
+  const other: Directory = { kind: "listed", sessions: [{ id: "kitchen", sensor: true }] };
+  assert.match(problemOf(fault, other, "live", place)?.text ?? "", /kitchen/);
+  const token = problemOf(fault, { kind: "refused", status: 401 }, "live", place);
+  assert.match(token?.title ?? "", /token/);
+});
+
+test("the directory is read with the token, and every failure is an answer", async () => {
+  const asked: RequestInit[] = [];
+  const answer = (body: unknown, status = 200) => (_url: string, init: RequestInit) => {
+    asked.push(init);
+    return Promise.resolve(new Response(JSON.stringify(body), { status }));
+  };
+  const sessions = [{ id: "demo", sensor: true, more: 1 }, { id: "x" }, { sensor: true }, 3];
+  assert.deepEqual(await readDirectory("u", "t", answer({ sessions })), {
+    kind: "listed",
+    sessions: [
+      { id: "demo", sensor: true },
+      { id: "x", sensor: false },
+    ],
+  });
+  assert.deepEqual(asked[0]?.headers, { authorization: "Bearer t" });
+  assert.deepEqual(await readDirectory("u", null, answer({}, 403)), { kind: "refused", status: 403 });
+  assert.deepEqual(await readDirectory("u", null, answer([])), { kind: "listed", sessions: [] });
+  const down = () => Promise.reject(new TypeError("down"));
+  assert.deepEqual(await readDirectory("u", null, down), { kind: "unreachable" });
+});
+
+test("a command's progress is the renderer's word, or the usual time where none speaks", () => {
+  const silent: Running = { command: COMMAND, at: 0, status: null, step: null, reason: null };
+  const busy = { ...SCENE, mode: "reacting", command_id: COMMAND.id };
+  const ask = (running: Running, now: number, scene: SceneState = busy) =>
+    progressOf(running, scene, now);
+  assert.deepEqual(ask(silent, 500), { state: "under_way", step: 0, isReported: false });
+  assert.deepEqual(ask(silent, 1_500), { state: "under_way", step: 1, isReported: false });
+  assert.equal(ask(silent, 60_000).step, 1);
+  assert.equal(ask(silent, 3_000, SCENE).state, "done");
+  assert.equal(ask(silent, 1_000, SCENE).state, "ended");
+  const spoken = { ...silent, status: "progress", step: 0 };
+  assert.deepEqual(ask(spoken, 60_000), { state: "under_way", step: 0, isReported: true });
+  assert.equal(ask({ ...spoken, status: "done" }, 0).state, "done");
+  assert.equal(ask({ ...spoken, status: "failed" }, 0, SCENE).state, "failed");
+});
+
+test("names and numbers in words", () => {
+  assert.equal(sentenceCase("close_window"), "Close window");
+  assert.equal(sessionTime(64_250_000_000), "1:04.2");
+  assert.equal(level(-3.04), "\u22123.0");
+  assert.equal(level(-0.01), "0.0");
+  assert.equal(reasonOf({ gesture: "cold", reason: "cold: busy" }), "Busy");
+  assert.equal(reasonOf({ gesture: "idle", reason: "cold: busy" }), "Cold: busy");
+});
