@@ -27,8 +27,13 @@ def recover(
     console.print(f"{output}: {report.records} records saved")
     if report.complete:
         console.print("nothing was lost")
-    else:
+        return
+    if report.damaged_records:
+        console.print(f"lost: {report.damaged_records} parts that cannot be read")
+    if report.missing_records:
+        console.print(f"lost: {report.missing_records} records, as gaps in their numbers show")
+    if not report.finished:
         console.print(
-            f"lost: {report.damaged_records} damaged chunks, {report.missing_records} records "
-            f"known to be missing, {report.lost_bytes} bytes at the end"
+            f"the writer did not come to an end: {report.lost_bytes} bytes make no whole record, "
+            "and what was not yet written is unknown"
         )

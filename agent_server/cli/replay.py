@@ -23,6 +23,8 @@ from agent_server.errors import ConfigError
 from agent_server.protocol import messages as m
 from agent_server.protocol.convert import decision_body
 from agent_server.recording.reader import Recording, open_recording
+from agent_server.recording.records import SensorChanged
+from agent_server.recording.topics import CORE
 from agent_server.service.core import Core
 from agent_server.service.replay import replay as replay_recording
 from agent_server.transports.client import Client, join, send_paced
@@ -90,7 +92,7 @@ async def _send(recording: Recording, url: str, speed: float, show: Story.Teller
         m.PROTOCOL,
         "agent-server-replay",
         __version__,
-        face="none" if recording.metadata.face == "none" else "expected",
+        face=_face(recording),
     )
     session = recording.metadata.session
     async with (
@@ -104,6 +106,15 @@ async def _send(recording: Recording, url: str, speed: float, show: Story.Teller
         await send_paced(sensor, inputs, speed)
         await asyncio.sleep(SETTLE_S)
         listener.cancel()
+
+
+def _face(recording: Recording) -> m.Face:
+    """What the recorded sensor said of the face; a live recording has it in its log."""
+    if recording.metadata.face is None:
+        for record in recording.records((CORE.name,)):
+            if isinstance(record.message, SensorChanged):
+                return record.message.face
+    return "none" if recording.metadata.face == "none" else "expected"
 
 
 async def _listen(monitor: Client, show: Story.Teller) -> None:

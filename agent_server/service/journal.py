@@ -44,6 +44,10 @@ class Journal(Protocol):
         """A command was issued."""
         ...
 
+    def flush(self) -> None:
+        """Some time has passed; what was taken ought to be safe now."""
+        ...
+
     def close(self) -> None:
         """The session is over."""
         ...
@@ -71,6 +75,9 @@ class NoJournal:
         """Do nothing."""
 
     def append_command(self, command: CommandMessage) -> None:
+        """Do nothing."""
+
+    def flush(self) -> None:
         """Do nothing."""
 
     def close(self) -> None:

@@ -63,6 +63,10 @@ class Recorder:
         """Write a command."""
         self._do(lambda writer: writer.append_command(command))
 
+    def flush(self) -> None:
+        """Hand what was written to the operating system."""
+        self._do(RecordingWriter.flush)
+
     def close(self) -> None:
         """Finish the file."""
         self._do(RecordingWriter.close)

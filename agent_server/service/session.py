@@ -248,6 +248,7 @@ class Session:
     async def _tick(self) -> None:
         while True:
             await asyncio.sleep(TICK_S)
+            self._journal.flush()
             arrival_ns = self._clock.now_ns()
             is_busy = self._jobs or self._is_inferring
             if is_busy or self._timeline.idle_ns(arrival_ns) < QUIET_NS:
