@@ -2,7 +2,7 @@
 
 Points and tangent vectors are flat: the last axis holds their n >= 2 coordinates, all others are
 batch axes that broadcast. The maps are accurate to rounding everywhere, near equal and near
-antipodal points too:
+antipodal points too (a norm that is off by e costs no more than e; more than 1e-6 is refused):
 
 - Angles come from W. Kahan's 2 atan2(|p - q|, |p + q|); arccos loses half of the digits near 0
   and near pi.

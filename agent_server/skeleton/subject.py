@@ -110,8 +110,6 @@ class SubjectLock:
                 return False
             if not self._choose(body_id, distance, stamp_ns):
                 return False
-        if self._ballot:
-            self._ballot.clear()
         self._seen_ns = max(self._seen_ns, stamp_ns)
         return True
 

@@ -90,6 +90,15 @@ def test_a_mended_stream_is_believed_again_within_seconds() -> None:
     assert not said[-1]
 
 
+def test_weak_evidence_keeps_the_verdict_as_it_is() -> None:
+    weak = POSE * MIRROR
+    weak[[4, 5, 7, 8], 2] = 2.0, 1.99, 2.0, 1.99
+    assert not any(verdicts(still(weak, 30)))
+    detector = MirrorDetector()
+    assert verdicts(still(POSE * MIRROR, 4), detector=detector)[-1]
+    assert all(verdicts(still(weak, 30), detector=detector))
+
+
 def test_a_longer_hop_comes_to_the_same() -> None:
     detector = MirrorDetector()
     ones = np.ones((25, 9), np.float32)

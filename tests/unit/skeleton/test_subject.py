@@ -61,6 +61,18 @@ def test_explicit_follows_nobody_else() -> None:
     assert show(lock, 9_033, 4)
 
 
+def test_the_elected_body_counts_from_its_own_last_frame() -> None:
+    lock = SubjectLock("nearest")
+    show(lock, 0, 1, 1.0)
+    show(lock, 195, 1, 1.0)
+    show(lock, 200, 2, 2.0)
+    assert lock.followed == 1
+    # A second after the frame of body 1 its place is free, and a new election begins.
+    assert not show(lock, 1_195, 2, 2.0)
+    assert lock.followed == 1
+    assert show(lock, 1_395, 2, 2.0)
+
+
 def test_a_short_absence_does_not_pass_the_lock_on() -> None:
     lock = SubjectLock("first")
     show(lock, 0, 1)
