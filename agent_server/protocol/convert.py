@@ -7,7 +7,7 @@ from itertools import chain
 import numpy as np
 
 from agent_server.domain.affect import AffectSample
-from agent_server.domain.arrays import Float32
+from agent_server.domain.arrays import Float32, Float64
 from agent_server.domain.command import Ack, AckStatus, Command
 from agent_server.domain.decision import Decision, SceneVerdict
 from agent_server.domain.motion import Forecast
@@ -49,12 +49,13 @@ def skeleton_from_message(
         if len(joints) != wanted:
             raise _wrong_count(message.format, wanted, len(joints))
         values = np.fromiter(chain.from_iterable(joints), np.float64, 4 * wanted)
-    table = values.round(JOINT_DECIMALS).reshape(wanted, 4)
-    # Comparisons with NaN are false, so `not <=` refuses it along with what is too large.
-    if not np.abs(table, out=values.reshape(wanted, 4)).max() <= limit or not (
-        table[:, 3].min() >= 0.0 and table[:, 3].max() <= 1.0
-    ):
-        _refuse(table, limit)
+    rounded = values.round(JOINT_DECIMALS)
+    table = rounded.reshape(wanted, 4)
+    confidence = table[:, 3].tolist()
+    # A sum of squares within the limit has no term beyond it, and one call tells; a body far
+    # from its sensor, and NaN, for which every comparison is false, are looked at one by one.
+    if not rounded.dot(rounded) <= limit * limit or min(confidence) < 0.0 or max(confidence) > 1.0:
+        _check_each(table, limit)
     return SkeletonFrame(
         originating_ns=message.originating_ns if stamp_ns is None else stamp_ns,
         body_id=message.body_id,
@@ -210,7 +211,8 @@ def _wrong_count(name: str, wanted: int, got: float) -> InvalidInput:
     )
 
 
-def _refuse(table: np.ndarray, limit: float) -> None:
+def _check_each(table: Float64, limit: float) -> None:
+    """Find the number that cannot be true, if there is one."""
     for (joint, axis), value in np.ndenumerate(table):
         field = f"joints[{joint}][{axis}]"
         if not np.isfinite(value):

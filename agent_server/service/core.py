@@ -17,7 +17,7 @@ from agent_server.domain.gesture import Classification
 from agent_server.domain.motion import BodyLost, Forecast, Window
 from agent_server.domain.scene import ObjectChanged, SceneSnapshot
 from agent_server.domain.skeleton import SkeletonFrame
-from agent_server.scene.room import Room
+from agent_server.scene.room import Acknowledgement, Room
 from agent_server.scene.rulebook import Rules
 from agent_server.stages.decide import GestureTracker, Phase, Tracking
 from agent_server.stages.gate import AffectGate
@@ -151,9 +151,9 @@ class Core:
         self._tracker.reset(lost.stamp_ns)
         return self._room.lose_body(lost)
 
-    def acknowledge(self, ack: Ack) -> tuple[Command, ...]:
+    def acknowledge(self, ack: Ack) -> Acknowledgement:
         """Take the renderer's word on a command."""
-        return self._room.acknowledge(ack).commands
+        return self._room.acknowledge(ack)
 
     def change_object(self, event: ObjectChanged) -> tuple[Command, ...]:
         """Somebody changed an object by hand.

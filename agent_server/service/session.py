@@ -161,10 +161,10 @@ class Session:
     def _take_ack(self, client: Client, message: m.AckMessage) -> None:
         self._require_acting(client)
         ack = convert.ack_from_message(message, self._now())
-        commands = self._core.acknowledge(ack)
-        self.counters["acks"] += 1
+        heard = self._core.acknowledge(ack)
+        self.counters["acks" if heard.taken else "stale_acks"] += 1
         self._journal.append_ack(ack)
-        self._deliver(commands)
+        self._deliver(heard.commands)
         self.audience.show(
             "ack",
             m.AckTelemetry(message.command_id, message.status, message.step, message.reason),

@@ -1,13 +1,14 @@
 """From a 25 Hz stream to overlapping windows of one second."""
 
-from collections import deque
-
 import numpy as np
 
 from agent_server.domain.motion import FRAME_NS, SEEN_FRAMES, Window
-from agent_server.domain.skeleton import CoreFrame
+from agent_server.domain.skeleton import CORE_JOINTS, CoreFrame
 from agent_server.skeleton.mirror import MirrorDetector
 from agent_server.skeleton.quality import assess
+
+_ROOM = 10 * SEEN_FRAMES
+"""Frames that are taken in before the newest second is moved back to the start."""
 
 
 class WindowStage:
@@ -19,14 +20,16 @@ class WindowStage:
 
     def __init__(self, hop: int) -> None:
         self._hop = hop
-        self._frames: deque[CoreFrame] = deque(maxlen=SEEN_FRAMES)
+        self._positions = np.empty((_ROOM, CORE_JOINTS, 3), np.float32)
+        self._confidence = np.empty((_ROOM, CORE_JOINTS), np.float32)
+        self._end = 0
         self._until_next = self._fresh = SEEN_FRAMES
         self._next_index = 0
         self._mirror = MirrorDetector()
 
     def reset(self) -> None:
         """Forget the frames, after a gap or when another body is followed."""
-        self._frames.clear()
+        self._end = 0
         self._until_next = self._fresh = SEEN_FRAMES
 
     def push(self, frame: CoreFrame) -> Window | None:
@@ -35,12 +38,19 @@ class WindowStage:
         Returns:
             A window that ends with this frame, or None.
         """
-        self._frames.append(frame)
+        if self._end == _ROOM:
+            self._positions[: SEEN_FRAMES - 1] = self._positions[1 - SEEN_FRAMES :]
+            self._confidence[: SEEN_FRAMES - 1] = self._confidence[1 - SEEN_FRAMES :]
+            self._end = SEEN_FRAMES - 1
+        self._positions[self._end] = frame.positions
+        self._confidence[self._end] = frame.confidence
+        self._end += 1
         self._until_next -= 1
-        if self._until_next:
-            return None
-        positions = np.stack([f.positions for f in self._frames])
-        confidence = np.stack([f.confidence for f in self._frames])
+        return self._cut(frame) if self._until_next == 0 else None
+
+    def _cut(self, last: CoreFrame) -> Window:
+        positions = self._positions[self._end - SEEN_FRAMES : self._end].copy()
+        confidence = self._confidence[self._end - SEEN_FRAMES : self._end].copy()
         positions.flags.writeable = False
         confidence.flags.writeable = False
         # Only what the last window did not show is new evidence.
@@ -49,9 +59,9 @@ class WindowStage:
         index, self._next_index = self._next_index, self._next_index + 1
         return Window(
             index=index,
-            body_id=frame.body_id,
-            start_ns=frame.stamp_ns - (SEEN_FRAMES - 1) * FRAME_NS,
-            end_ns=frame.stamp_ns,
+            body_id=last.body_id,
+            start_ns=last.stamp_ns - (SEEN_FRAMES - 1) * FRAME_NS,
+            end_ns=last.stamp_ns,
             positions=positions,
             confidence=confidence,
             quality=assess(positions, confidence, mirrored=mirrored),

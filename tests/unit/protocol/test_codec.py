@@ -117,6 +117,11 @@ def test_a_skeleton_that_cannot_be_true_is_refused(message, field, code):
     assert (refused.value.field, refused.value.code) == (field, code)
 
 
+def test_a_body_at_the_far_end_of_the_range_is_no_mistake():
+    far = packed([0.0, 0.5, 49.0, 1.0] * 9)
+    assert skeleton_from_message(far).joints[8, 2] == 49.0
+
+
 def test_millimetres_may_be_larger_than_metres():
     joints = [0.0, 500.0, 2000.0, 1.0] * 32
     assert skeleton_from_message(packed(joints, "azure_kinect")).joints[0, 2] == 2000.0
