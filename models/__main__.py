@@ -2,18 +2,29 @@
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 import torch
 import typer
 
 from agent_server.errors import AgentServerError
+from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import cut, join
-
-if TYPE_CHECKING:
-    from models.export.session import OnnxModel
+from models.evaluation.latency import bundle_latency
+from models.evaluation.report import classifier_report, prediction_report
+from models.evaluation.sim2real import sim2real_report
+from models.export.classifier import export_classifier
+from models.export.predictor import export_predictor
+from models.export.session import OnnxModel
+from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
+from models.interformer.train import train as train_classifier
+from models.ma_wgan.config import CONFIGS as MA_WGAN_CONFIGS
+from models.ma_wgan.train import load_predictor
+from models.ma_wgan.train import train as train_predictor
+from models.training.run import Run
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 train_app = typer.Typer(no_args_is_help=True, help="Train a model.")
@@ -25,9 +36,7 @@ ConfigOption = Annotated[str, typer.Option("--config", help="Name of the configu
 SeedOption = Annotated[int, typer.Option("--seed", help="Of everything random.")]
 ResumeOption = Annotated[bool, typer.Option("--resume", help="Go on with the run in --out.")]
 StepsOption = Annotated[int | None, typer.Option("--steps", help="Instead of the config's.")]
-CacheOption = Annotated[
-    Path, typer.Option("--cache", help="Where generated recordings are kept.")
-]
+CacheOption = Annotated[Path, typer.Option("--cache", help="Where generated recordings are kept.")]
 CACHE = Path("runs/cache")
 T = TypeVar("T")
 
@@ -52,13 +61,7 @@ def train_ma_wgan(
     cache: CacheOption = CACHE,
 ) -> None:
     """Train the predictor."""
-    from dataclasses import replace
-
-    from models.ma_wgan.config import CONFIGS
-    from models.ma_wgan.train import train
-    from models.training.run import Run
-
-    chosen = _choose(CONFIGS, config)
+    chosen = _choose(MA_WGAN_CONFIGS, config)
     if steps is not None:
         chosen = replace(chosen, steps=steps)
     torch.set_num_threads(1)
@@ -69,7 +72,7 @@ def train_ma_wgan(
         "synthetic": cut(synthetic_split(cache, "validation"), stride=25),
         "cmu": cut(cmu_split(data, "validation"), stride=5),
     }
-    train(chosen, run, [(0.6, synthetic), (0.4, mocap)], validation)
+    train_predictor(chosen, run, [(0.6, synthetic), (0.4, mocap)], validation)
 
 
 @train_app.command("interformer")
@@ -84,14 +87,7 @@ def train_interformer(
     cache: CacheOption = CACHE,
 ) -> None:
     """Train the classifier on seen and predicted frames."""
-    from dataclasses import replace
-
-    from models.interformer.config import CONFIGS
-    from models.interformer.train import train
-    from models.ma_wgan.train import load_predictor
-    from models.training.run import Run
-
-    chosen = _choose(CONFIGS, config)
+    chosen = _choose(INTERFORMER_CONFIGS, config)
     if steps is not None:
         chosen = replace(chosen, steps=steps)
     torch.set_num_threads(1)
@@ -109,7 +105,7 @@ def train_interformer(
             cut(cmu_split(data, "validation"), stride=5),
         ]
     )
-    train(chosen, run, training, validation, load_predictor(predictor))
+    train_classifier(chosen, run, training, validation, load_predictor(predictor))
 
 
 export_app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")
@@ -137,8 +133,6 @@ def export_ma_wgan(
     cache: CacheOption = CACHE,
 ) -> None:
     """Export, check and measure a predictor."""
-    from models.export.predictor import export_predictor
-
     torch.set_num_threads(1)
     _show(export_predictor(run, out, version, data, cache).results, as_json=False)
 
@@ -156,8 +150,6 @@ def export_interformer(
     cache: CacheOption = CACHE,
 ) -> None:
     """Calibrate, export, check and measure a classifier."""
-    from models.export.classifier import export_classifier
-
     torch.set_num_threads(1)
     manifest = export_classifier(run, predictor, seen_only, out, version, data, cache)
     _show(manifest.results, as_json=False)
@@ -171,8 +163,6 @@ def evaluate_prediction(
     cache: CacheOption = CACHE,
 ) -> None:
     """Errors of a predictor beside standing still."""
-    from models.evaluation.report import prediction_report
-
     _show(prediction_report(_model(bundle), data, cache), as_json)
 
 
@@ -189,9 +179,6 @@ def evaluate_gestures(
     cache: CacheOption = CACHE,
 ) -> None:
     """Accuracy, calibration, delays and false reactions of a classifier."""
-    from models.evaluation.report import classifier_report
-    from models.evaluation.sim2real import sim2real_report
-
     classify, predict = _model(bundle), _model(predictor)
     if benchmark == "sim2real":
         _show(sim2real_report(classify.batched, predict.batched, data), as_json)
@@ -202,14 +189,10 @@ def evaluate_gestures(
 @app.command()
 def latency(as_json: JsonOption = False) -> None:
     """Time of both shipped models for one window, on one thread."""
-    from models.evaluation.latency import bundle_latency
-
     _show({path.name: bundle_latency(path) for path in (PREDICTOR, CLASSIFIER)}, as_json)
 
 
-def _model(bundle: Path) -> "OnnxModel":
-    from agent_server.inference.manifest import MODEL_FILE, read_manifest
-    from models.export.session import OnnxModel
+def _model(bundle: Path) -> OnnxModel:
 
     read_manifest(bundle)
     return OnnxModel(bundle / MODEL_FILE)

@@ -58,5 +58,3 @@ def idle_streams(seed: int, minutes: int, subjects: tuple[str, ...]) -> list[Flo
         positions, _ = resample(observe_core(_Chapter(performance, now), sensor, rng))
         streams.append(positions.astype(np.float32))
     return streams
-
-

@@ -11,6 +11,7 @@ from agent_server.domain.gesture import DISCOMFORTS, HELLO, IDLE
 from agent_server.domain.motion import PREDICTED_FRAMES, RATE_HZ
 from agent_server.synthetic.clips import sample_clip
 from agent_server.synthetic.corpus import SENSOR_SHARES, people, resample
+from agent_server.synthetic.person import Person
 from agent_server.synthetic.sensors import SENSORS, observe_core
 from models.data.windows import Recording
 
@@ -47,7 +48,7 @@ def cached_recordings(
     return _read(path)
 
 
-def _take(rng: np.random.Generator, group: dict, subjects: Sequence[str]) -> Recording:
+def _take(rng: np.random.Generator, group: dict[str, Person], subjects: Sequence[str]) -> Recording:
     person = group[str(rng.choice(list(subjects)))]
     idle = rng.random() < IDLE_SHARE
     gesture = IDLE if idle else str(rng.choice([*DISCOMFORTS, HELLO]))

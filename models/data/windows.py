@@ -206,9 +206,7 @@ def augment(
     return observed - origin, clean - origin
 
 
-def _hold_joints(
-    observed: torch.Tensor, chance: float, generator: torch.Generator
-) -> torch.Tensor:
+def _hold_joints(observed: torch.Tensor, chance: float, generator: torch.Generator) -> torch.Tensor:
     """Let elbows and wrists keep their last known position for up to half a second."""
     size, frames = observed.shape[:2]
     for joint in (
@@ -223,7 +221,9 @@ def _hold_joints(
         time = torch.arange(frames)[None]
         held = dropped[:, None] & (time >= first[:, None]) & (time < (first + count)[:, None])
         source = torch.where(held, first[:, None] - 1, time)
-        observed[:, :, joint] = observed[:, :, joint].gather(1, source[:, :, None].expand(-1, -1, 3))
+        observed[:, :, joint] = observed[:, :, joint].gather(
+            1, source[:, :, None].expand(-1, -1, 3)
+        )
     return observed
 
 

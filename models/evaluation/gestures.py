@@ -35,8 +35,10 @@ def probabilities_of(classify: Classify, predict: Predict, seen: Float32) -> Flo
 
 
 def labelled_windows(windows: WindowSet) -> tuple[Float32, Float32, np.ndarray]:
-    """Seen frames, whole windows and labels of the windows that have one and whose future
-    shows nothing that the label does not say."""
+    """Seen frames, whole windows and labels of the windows that can be judged.
+
+    These have a label, and their future shows nothing that the label does not say.
+    """
     since = windows.since_onset
     hidden = (since < 0) & (since > -50)
     index = ((windows.labels != AMBIGUOUS) & ~hidden).nonzero()[:, 0]
@@ -71,7 +73,7 @@ def calibration_error(probabilities: Float32, labels: np.ndarray, bins: int = 15
         inside = which == b
         if inside.any():
             gap += inside.mean() * abs(float(confidence[inside].mean() - right[inside].mean()))
-    return gap
+    return float(gap)
 
 
 def sliding_seen(positions: Float32) -> tuple[Float32, np.ndarray]:
@@ -157,7 +159,7 @@ def as_torch(model: torch.nn.Module) -> Callable[[Float32], Float32]:
 
     def run(values: Float32) -> Float32:
         with torch.no_grad():
-            parts = [model(part) for part in torch.from_numpy(values).split(256)]
+            parts = [model(part) for part in torch.split(torch.from_numpy(values), 256)]
         result: Float32 = torch.cat(parts).numpy()
         return result
 

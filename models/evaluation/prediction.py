@@ -17,9 +17,7 @@ HORIZONS_MS = (80, 160, 320, 400, 560, 1000, 1500, 2000)
 def horizon_errors(predicted: Float32, true: Float32) -> dict[str, float]:
     """Mean joint distance in mm at each horizon (MPJPE); both (N, 50, 9, 3), metres."""
     errors = 1000 * np.linalg.norm(predicted - true, axis=-1).mean(axis=(0, 2))
-    return {
-        str(ms): round(float(errors[ms * 1_000_000 // FRAME_NS - 1]), 2) for ms in HORIZONS_MS
-    }
+    return {str(ms): round(float(errors[ms * 1_000_000 // FRAME_NS - 1]), 2) for ms in HORIZONS_MS}
 
 
 def mean_step(start: Float32, future: Float32) -> Float32:

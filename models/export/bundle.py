@@ -91,9 +91,8 @@ def write_bundle(
             "onnx_difference": check_parity(export.network, model, export.windows),
         }
         golden = _golden_input(export.windows)
-        np.savez_compressed(
-            draft / GOLDEN_FILE, **{input_name: golden, output_name: model(golden)}
-        )
+        arrays: dict[str, Any] = {input_name: golden, output_name: model(golden)}
+        np.savez_compressed(draft / GOLDEN_FILE, **arrays)
         manifest = Manifest(
             format_version=FORMAT_VERSION,
             name=export.name,

@@ -84,7 +84,7 @@ def calibrated(classifier: Classifier, predict: OnnxModel, data: Path, cache: Pa
     seen = windows.frames(index)[0][:, :SEEN_FRAMES]
     motion = torch.cat([seen, torch.from_numpy(predict.batched(seen.numpy()))], dim=1)
     with torch.no_grad():
-        logits = torch.cat([classifier(part) for part in motion.split(256)])
+        logits = torch.cat([classifier(part) for part in torch.split(motion, 256)])
     return Calibrated(classifier, fit_temperature(logits, windows.labels[index])).eval()
 
 

@@ -46,7 +46,7 @@ class SpatialAttention(nn.Module):
         """(B, T, 3 * J * F) -> the same shape."""
         size, tokens, width = x.shape
         heads = x.reshape(size * tokens, 3, self.joints, self.features)
-        q, k, v = (heads @ self.queries_keys_values).split(self.features, dim=-1)
+        q, k, v = torch.split(heads @ self.queries_keys_values, self.features, dim=-1)
         scores = q @ k.transpose(-1, -2) * self.features**-0.5 + self.bias
         mixed = torch.softmax(scores, dim=-1) @ v  # (B * T, 3, J, F)
         out: torch.Tensor = self.out(mixed.reshape(size, tokens, width))
@@ -129,8 +129,9 @@ class Classifier(nn.Module):
             x = layer(x)
         # The head sees every token and its logits are averaged by a product: a row of a
         # batch then has the bits that it has alone.
-        logits = self.head(torch.relu(self.hidden(self.norm(x))))
-        return (self.average @ logits)[:, 0]
+        each = self.head(torch.relu(self.hidden(self.norm(x))))
+        logits: torch.Tensor = self.average @ each  # (B, 1, classes)
+        return logits[:, 0]
 
 
 class Calibrated(nn.Module):

@@ -106,7 +106,7 @@ def window_logits(
 ) -> torch.Tensor:
     """Logits (N, C) with predicted futures, or with true ones where ``predictor`` is None."""
     logits = []
-    for index in torch.arange(len(windows)).split(512):
+    for index in torch.split(torch.arange(len(windows)), 512):
         motion = windows.frames(index)[0].to(device)
         if predictor is not None:
             seen = motion[:, :SEEN_FRAMES]
@@ -118,13 +118,13 @@ def window_logits(
 def balanced_loss(logits: torch.Tensor, labels: torch.Tensor) -> float:
     """Cross entropy, averaged over the windows of each class and then over the classes."""
     each = F.cross_entropy(logits, labels, reduction="none")
-    return float(torch.stack([each[labels == c].mean() for c in labels.unique()]).mean())
+    return float(torch.stack([each[labels == c].mean() for c in torch.unique(labels)]).mean())
 
 
 def balanced_accuracy(logits: torch.Tensor, labels: torch.Tensor) -> float:
     """Share of right answers, averaged over the classes that occur."""
     right = (logits.argmax(-1) == labels).float()
-    return float(torch.stack([right[labels == c].mean() for c in labels.unique()]).mean())
+    return float(torch.stack([right[labels == c].mean() for c in torch.unique(labels)]).mean())
 
 
 class Trainer:
@@ -147,7 +147,7 @@ class Trainer:
         logits = self.network(motion)
         loss = F.cross_entropy(logits, labels, label_smoothing=self.config.smoothing)
         self.optimizer.zero_grad(set_to_none=True)
-        loss.backward()  # type: ignore[no-untyped-call]
+        torch.autograd.backward(loss)
         nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
         self.optimizer.step()
         self.schedule.step()

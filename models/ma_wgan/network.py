@@ -43,9 +43,7 @@ class MixerBlock(nn.Module):
         # The weight multiplies from the left, so that no transpose is needed.
         mixed = self.time.weight @ self.time_norm(x) + self.time.bias[:, None]
         x = x + mixed
-        out: torch.Tensor = x + self.channel_out(
-            torch.relu(self.channel_in(self.channel_norm(x)))
-        )
+        out: torch.Tensor = x + self.channel_out(torch.relu(self.channel_in(self.channel_norm(x))))
         return out
 
 

@@ -10,6 +10,7 @@ import torch
 from torch import nn
 
 from agent_server.domain.motion import PREDICTED_FRAMES, SEEN_FRAMES
+from agent_server.domain.skeleton import CoreJoint
 from models.data.windows import HALF_QUARTER_TURN, Augmentation, WindowSet, augment
 from models.ma_wgan.config import NetworkConfig, TrainConfig
 from models.ma_wgan.network import Critic, Generator
@@ -67,9 +68,7 @@ def reference_point(windows: WindowSet, generator: torch.Generator) -> torch.Ten
     return sphere.karcher_mean(points[length > MOVING_M].flatten(1)).float()
 
 
-def make_target(
-    observed: torch.Tensor, clean: torch.Tensor, reference: torch.Tensor
-) -> Target:
+def make_target(observed: torch.Tensor, clean: torch.Tensor, reference: torch.Tensor) -> Target:
     """What the generator ought to give for windows (B, 75, 9, 3)."""
     seen, curve = future_curve(observed, clean)
     point, length = srvf.to_sphere(curve)
@@ -80,6 +79,12 @@ def make_target(
         log_length=torch.log(length + 1e-2),
         moving=length / (length + MOVING_M),
     )
+
+
+def about_navel(poses: torch.Tensor) -> torch.Tensor:
+    """Every fifth pose of (B, T, 9, 3), relative to its own navel."""
+    some = poses[:, ::GRAM_EVERY]
+    return some - some[:, :, CoreJoint.NAVEL : CoreJoint.NAVEL + 1]
 
 
 def generator_terms(
@@ -98,13 +103,11 @@ def generator_terms(
     terms = {
         "adversarial": -critic(tangent).mean(),
         "reconstruction": (target.moving * gap).mean(),
-        "skeleton": gram_distance(pose[:, ::GRAM_EVERY], true_pose[:, ::GRAM_EVERY]).mean(),
+        "skeleton": gram_distance(about_navel(pose), about_navel(true_pose)).mean(),
         "bones": bone_loss(pose, true_pose),
         "length": (target.moving * (log_length - target.log_length).abs()).mean(),
         "position": torch.sqrt(((pose - true_pose) ** 2).sum(-1) + 1e-8).mean(),
-        "velocity": torch.sqrt(
-            ((steps - true_steps).reshape(joints) ** 2).sum(-1) + 1e-8
-        ).mean(),
+        "velocity": torch.sqrt(((steps - true_steps).reshape(joints) ** 2).sum(-1) + 1e-8).mean(),
     }
     return terms, tangent
 
@@ -117,7 +120,7 @@ def critic_loss(
     generator: torch.Generator,
 ) -> torch.Tensor:
     """Wasserstein loss with the gradient penalty on tangent interpolates."""
-    gap = critic(fake).mean() - critic(real).mean()
+    gap: torch.Tensor = critic(fake).mean() - critic(real).mean()
     return gap + penalty * gradient_penalty(critic, real, fake, generator)
 
 
@@ -125,7 +128,7 @@ def critic_loss(
 def position_error(network: nn.Module, windows: WindowSet, device: torch.device) -> float:
     """Mean distance of predicted and true joints over all windows and frames, in mm."""
     total = 0.0
-    for index in torch.arange(len(windows)).split(512):
+    for index in torch.split(torch.arange(len(windows)), 512):
         observed, clean = windows.frames(index)
         future = network(observed[:, :SEEN_FRAMES].to(device)).cpu()
         total += float((future - clean[:, SEEN_FRAMES:]).norm(dim=-1).mean(dim=(1, 2)).sum())
@@ -164,16 +167,14 @@ class Trainer:
         terms, tangent = generator_terms(self.network, self.critic, target)
         loss = torch.stack([getattr(config, name) * term for name, term in terms.items()]).sum()
         self.optimizer.zero_grad(set_to_none=True)
-        loss.backward()
+        torch.autograd.backward(loss)
         nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
         self.optimizer.step()
         self.schedule.step()
         self.ema.update(self.network)
-        gap = critic_loss(
-            self.critic, target.tangent, tangent.detach(), config.penalty, generator
-        )
+        gap = critic_loss(self.critic, target.tangent, tangent.detach(), config.penalty, generator)
         self.critic_optimizer.zero_grad(set_to_none=True)
-        gap.backward()
+        torch.autograd.backward(gap)
         self.critic_optimizer.step()
         return {name: float(term.detach()) for name, term in terms.items()}
 

@@ -20,7 +20,10 @@ def heading(motion: torch.Tensor) -> torch.Tensor:
     line = motion[:, :, CoreJoint.RIGHT_SHOULDER] - motion[:, :, CoreJoint.LEFT_SHOULDER]
     # A product from the left instead of mean(): onnxruntime then gives a row of a batch the
     # bits that it has alone, which its reductions do not.
-    average = torch.full((1, line.shape[1]), 1.0 / line.shape[1], dtype=line.dtype, device=line.device) @ line
+    average = (
+        torch.full((1, line.shape[1]), 1.0 / line.shape[1], dtype=line.dtype, device=line.device)
+        @ line
+    )
     x = average[:, 0, 0:1] + FALLBACK_M
     z = average[:, 0, 2:3]
     return torch.cat([x, z], dim=1) / torch.sqrt(x * x + z * z + 1e-12)

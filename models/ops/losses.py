@@ -39,7 +39,7 @@ def gram_distance(predicted: torch.Tensor, true: torch.Tensor) -> torch.Tensor:
     Returns:
         Shape (...,), square metres.
     """
-    nuclear = torch.linalg.svdvals(predicted.transpose(-1, -2) @ true).sum(-1)
+    nuclear: torch.Tensor = torch.linalg.svdvals(predicted.transpose(-1, -2) @ true).sum(-1)
     return (predicted**2).sum((-1, -2)) + (true**2).sum((-1, -2)) - 2 * nuclear
 
 

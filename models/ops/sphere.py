@@ -4,6 +4,7 @@ Vectors are flat: the last axis holds all coordinates.
 """
 
 import torch
+import torch.nn.functional as F
 
 TINY = 1e-12
 NEAR = 1e-4
@@ -56,12 +57,10 @@ def log(point: torch.Tensor, base: torch.Tensor) -> torch.Tensor:
 
 def karcher_mean(points: torch.Tensor, steps: int = 32, tolerance: float = 1e-9) -> torch.Tensor:
     """Karcher mean of ``points`` (N, D) by gradient descent from their normalised average."""
-    mean = points.mean(0)
-    mean = mean / mean.norm().clamp_min(TINY)
+    mean = F.normalize(points.mean(0), dim=0)
     for _ in range(steps):
         step = log(points, mean).mean(0)
-        mean = exp(step, mean)
-        mean = mean / mean.norm()
+        mean = F.normalize(exp(step, mean), dim=0)
         if float(step.norm()) < tolerance:
             break
     return mean

@@ -36,7 +36,9 @@ class TrainingProgress:
 
     def report(self, step: int, values: Mapping[str, float]) -> None:
         """A line that stays, for example after a validation."""
-        self._console.print(f"{step}/{self._steps} {_text(values)}", highlight=False, soft_wrap=True)
+        self._console.print(
+            f"{step}/{self._steps} {_text(values)}", highlight=False, soft_wrap=True
+        )
 
 
 def _text(values: Mapping[str, float]) -> str:

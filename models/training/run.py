@@ -92,7 +92,9 @@ def read_info(folder: Path) -> dict[str, Any]:
     """
     path = folder / INFO
     if not path.exists():
-        raise InvalidInput(f"{folder} holds no training run: train one with `python -m models train`")
+        raise InvalidInput(
+            f"{folder} holds no training run: train one with `python -m models train`"
+        )
     info: dict[str, Any] = json.loads(path.read_text())
     return info
 
