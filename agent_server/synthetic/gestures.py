@@ -16,8 +16,8 @@ from agent_server.synthetic.script import BOTH, Hands, Pen, Script, Writer, degr
 from agent_server.synthetic.trajectory import ORIGIN, Vector
 
 Swivel = tuple[float, float]
-_FORWARD: Vector = (0.06, 0.0, -0.13)
-_SIDEWAYS: Vector = (0.17, 0.0, -0.08)
+_FORWARD: Vector = (0.06, 0.0, -0.18)
+_SIDEWAYS: Vector = (0.22, 0.0, -0.12)
 
 
 def _flinch(pen: Pen, start_s: float, stop_s: float, pitch: float, spread: float = 6) -> None:
@@ -50,7 +50,7 @@ def _at_face(
     fingers: Vector,
     pitch: float,
     bow: Vector = _FORWARD,
-    median_s: float = 0.78,
+    median_s: float = 0.72,
 ) -> None:
     """Raises hands to the face, holds them there, lowers them."""
     arrival = pen.bring(
@@ -317,10 +317,16 @@ def _wave(
 ) -> None:
     """Hands swing sideways."""
     arrival = pen.bring(
-        hands, "chest", centre, spread, swivel, fingers=(0.0, 0.7, 0.0), median_s=0.7
+        hands,
+        "chest",
+        centre,
+        spread,
+        swivel,
+        fingers=(0.0, 0.7, 0.0),
+        median_s=pen.uniform(0.45, 0.85),
     )
     frequency = pen.uniform(*rate) * pen.person.tempo**0.5
-    release = arrival + max(pen.hold(), 1.5 / frequency)
+    release = arrival + max(0.8 * pen.hold(), 1.5 / frequency)
     amplitude = pen.uniform(*size) * pen.person.vigour * min(1.0, 2.2 / frequency)
     mirrored = pen.chance(0.7)
     depth = pen.rng.normal(0, 0.25) * amplitude
@@ -337,7 +343,7 @@ def _wave(
             phase_rad=pen.rng.normal(0, 0.4),
             ramp_s=0.2,
         )
-    end = pen.lower(hands, release, median_s=0.85)
+    end = pen.lower(hands, release, median_s=pen.uniform(0.5, 0.9))
     if pen.chance(0.3):
         nod = degrees(pen.uniform(-6, 8), pen.rng.normal(0, 4), pen.rng.normal(0, 5))
         pen.turn_and_back("head", pen.start_s, end, nod)
@@ -353,7 +359,7 @@ def _beside_head(pen: Pen) -> None:
 
 def _before_face(pen: Pen) -> None:
     place, spread = (0.22, 0.12, -0.38), (0.08, 0.07, 0.05)
-    _wave(pen, (pen.main,), place, spread, (26.0, 12.0), size=(0.10, 0.26), rate=(1.2, 2.6))
+    _wave(pen, (pen.main,), place, spread, (26.0, 12.0), size=(0.10, 0.28), rate=(1.2, 2.8))
 
 
 def _high(pen: Pen) -> None:
@@ -367,7 +373,7 @@ def _small(pen: Pen) -> None:
 
 
 def _both_hands(pen: Pen) -> None:
-    place, spread = (0.35, 0.15, -0.25), (0.06, 0.12, 0.08)
+    place, spread = (0.32, 0.14, -0.26), (0.05, 0.10, 0.07)
     _wave(pen, BOTH, place, spread, (25.0, 14.0), size=(0.06, 0.18), rate=(1.2, 3.0))
 
 

@@ -178,7 +178,7 @@ class Pen:
         shared = self.around(centre, spread)
         mean = natural_swivel(frame, shared) if swivel is None else swivel[0]
         turned = float(np.clip(self.rng.normal(mean, swivel[1] if swivel else 8.0), -30, 130))
-        path = self.around(bow, (0.06, 0.02, 0.05))
+        path = self.around(bow, (0.07, 0.02, 0.06))
         start = self.start_s if start_s is None else start_s
         duration = self.seconds(median_s)
         arrival = start
@@ -203,7 +203,7 @@ class Pen:
             arrival = max(arrival, end)
         return arrival
 
-    def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.9) -> float:
+    def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.85) -> float:
         """Brings hands back to rest; returns when the last one is there."""
         return self._rest_at(hands, self.rest, start_s, self.seconds(median_s))
 
@@ -219,7 +219,7 @@ class Pen:
             rest = rests[side]
             begin = start_s + (self._delay[1 - side] if len(hands) > 1 else 0.0)
             mine = duration_s * self.uniform(0.9, 1.1)
-            bow = self.around((0.06, 0.0, -0.09), 0.04)
+            bow = self.around((0.07, 0.0, -0.13), 0.05)
             swivel = float(np.degrees(rest.swivel_rad))
             arrival = self.reach(
                 side, begin, mine, rest.frame, rest.point, swivel, hand=rest.hand, bow=bow

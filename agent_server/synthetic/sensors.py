@@ -198,9 +198,8 @@ def observe_frames(
     error = core - place_core(body, sensor.places)
     # A joint beside the core ones goes wrong as the core joint does that it hangs on.
     positions = clean + error[:, table.follows]
-    own = _wander(len(stamps), len(table.names), sensor, rng) + sensor.jitter_m * (
-        rng.standard_normal(positions.shape)
-    )
+    smooth, _ = _wander(len(stamps), len(table.names), sensor, rng)
+    own = 0.5 * smooth + sensor.jitter_m * rng.standard_normal(positions.shape)
     own[:, table.core] = 0.0
     confidence = core_confidence[:, table.follows].copy()
     positions += own
@@ -236,8 +235,11 @@ def _sense(body: BodyMotion, sensor: Sensor, rng: np.random.Generator) -> tuple[
     seen += sensor.fit_m * rng.standard_normal((9, 3)) * _SURENESS[:, None] * axes
     exposed = exposure(clean, body)
     far = (clean[..., 2:] / 2.0) ** 2 if sensor.lag_s else 1.0
-    size = _restlessness(clean, body.times_s, exposed)[..., None] * far
-    seen += _wander(n, 9, sensor, rng) * size * _SURENESS[:, None]
+    smooth, steps = _wander(n, 9, sensor, rng)
+    moving = 0.10 + 0.8 * np.clip(_speed(clean, body.times_s), 0.0, 1.0)[..., None]
+    hidden = exposed[..., None]
+    error = 1.5 * (moving + 0.3 * hidden) * smooth + 0.4 * (moving + 1.1 * hidden) * steps
+    seen += error * far * _SURENESS[:, None]
     confidence = np.ones((n, 9))
     if sensor.weakness is not None:
         fail(seen, confidence, exposed, body.times_s, sensor.weakness, rng)
@@ -247,19 +249,20 @@ def _sense(body: BodyMotion, sensor: Sensor, rng: np.random.Generator) -> tuple[
     return seen, confidence
 
 
-def _restlessness(clean: Float64, times_s: Float64, exposed: Float64) -> Float64:
-    """How strong slow errors are, shape (T, 9): little at rest, more in motion and hidden."""
+def _speed(clean: Float64, times_s: Float64) -> Float64:
+    """Metres a second from the frame before, shape (T, 9)."""
     step = np.zeros(clean.shape[:2])
     step[1:] = np.linalg.norm(np.diff(clean, axis=0), axis=2)
-    period = np.diff(times_s, prepend=times_s[0] - 1.0)
-    return np.asarray(0.10 + 0.8 * np.clip(step / period[:, None], 0.0, 1.0) + 0.9 * exposed)
+    return np.asarray(step / np.diff(times_s, prepend=times_s[0] - 1.0)[:, None])
 
 
 _SURENESS = np.array([0.9, 0.7, 0.6, 0.8, 1.0, 1.2, 0.8, 1.0, 1.2])
 
 
-def _wander(n: int, joints: int, sensor: Sensor, rng: np.random.Generator) -> Float64:
-    """Slow errors, shape (n, joints, 3): a smooth part and one that jumps now and then."""
+def _wander(
+    n: int, joints: int, sensor: Sensor, rng: np.random.Generator
+) -> tuple[Float64, Float64]:
+    """Slow errors, shape (n, joints, 3) each: smooth ones, and ones that jump now and then."""
     period = max(2, round(sensor.wander_s * sensor.rate_hz))
     knots = rng.standard_normal((n // period + 3, joints, 3))
     at = np.arange(n) / period
@@ -271,8 +274,8 @@ def _wander(n: int, joints: int, sensor: Sensor, rng: np.random.Generator) -> Fl
     change[0] = True
     held = np.maximum.accumulate(np.where(change, np.arange(n)[:, None], 0), axis=0)
     steps = rng.standard_normal((n, joints, 3))[held, np.arange(joints)]
-    axes = np.array([1.0, 1.0, sensor.depth_factor])
-    return np.asarray(sensor.wander_m * (1.5 * smooth + 0.35 * steps) * axes)
+    size = sensor.wander_m * np.array([1.0, 1.0, sensor.depth_factor])
+    return smooth * size, steps * size
 
 
 def _low_pass(seen: Float64, sensor: Sensor) -> Float64:

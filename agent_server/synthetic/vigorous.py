@@ -116,7 +116,7 @@ def _duck(pen: Pen) -> None:
 def _bow(pen: Pen) -> None:
     down = pen.seconds(0.9)
     stay = pen.uniform(0.1, 1.0)
-    depth = pen.uniform(20, 70)
+    depth = pen.uniform(20, 80)
     for part, share in (("trunk", 1.0), ("head", 0.25)):
         pen.turn(part, pen.start_s, down, degrees(share * depth, 0, 0))
         pen.turn(part, pen.start_s + down + stay, down, ORIGIN)
@@ -252,10 +252,20 @@ def _strokes(pen: Pen) -> None:
 
 
 def _weapon(pen: Pen) -> None:
-    """A hand goes over the shoulder to the back and returns to the front."""
+    """A hand goes over a shoulder, as if to draw a sword, and returns to the front."""
     behind = pen.around((0.14, 0.13, 0.09), 0.03)
+    if pen.chance(0.65):
+        behind = pen.around((-0.14, 0.12, -0.12), (0.05, 0.08, 0.06))
     first = pen.seconds(0.8)
-    pen.reach(pen.main, pen.start_s, first, "chest", behind, 105.0, bow=(0.0, 0, -0.1))
+    pen.reach(
+        pen.main,
+        pen.start_s,
+        first,
+        "chest",
+        behind,
+        None if behind[0] < 0 else 105.0,
+        bow=(0.0, 0, -0.1),
+    )
     at = pen.start_s + first + pen.uniform(0, 0.4)
     front = pen.around((0.12, -0.28, -0.32), 0.05)
     move = pen.seconds(0.7)
@@ -277,6 +287,18 @@ def _drum(pen: Pen) -> None:
     for side in BOTH:
         along = (0.0, size * min(1.0, 1.8 / frequency), -0.3 * size)
         pen.swing(side, arrival - 0.2, stop, along, frequency, phase_rad=np.pi * side * opposed)
+    pen.lower(BOTH, stop)
+
+
+def _beat_time(pen: Pen) -> None:
+    """Stretches out both arms and beats inwards and outwards, as a conductor does."""
+    place, spread = (0.46, 0.08, -0.14), (0.06, 0.16, 0.10)
+    arrival = pen.bring(BOTH, "chest", place, spread, median_s=0.7)
+    stop = arrival + pen.uniform(0.8, 2.5)
+    along = (pen.uniform(0.06, 0.18), pen.rng.normal(0, 0.05), 0.0)
+    frequency = pen.uniform(0.7, 2.2)
+    for side in BOTH:
+        pen.swing(side, arrival - 0.2, stop, along, frequency)
     pen.lower(BOTH, stop)
 
 
@@ -382,7 +404,7 @@ VIGOROUS: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "lift_arms": (1.5, _lift_arms),
         "sideways": (1.0, _sideways),
         "duck": (1.5, _duck),
-        "bow": (1.2, _bow),
+        "bow": (1.6, _bow),
         "kick": (1.2, _kick),
         "push_side": (1.5, _push_side),
         "push_forward": (1.0, _push_forward),
@@ -394,6 +416,7 @@ VIGOROUS: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "strokes": (1.0, _strokes),
         "weapon": (1.2, _weapon),
         "drum": (1.3, _drum),
+        "beat_time": (0.8, _beat_time),
         "clap": (1.3, _clap),
         "knock": (0.8, _knock),
         "curl": (0.7, _curl),
