@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 
 from agent_server.domain.gesture import GESTURES, IDLE
 from agent_server.domain.motion import CLASSIFIED_FRAMES, SEEN_FRAMES
@@ -45,28 +46,31 @@ class Recording:
         subject: Who moves.
     """
 
-    observed: np.ndarray
-    clean: np.ndarray
+    observed: NDArray[np.float32]
+    clean: NDArray[np.float32]
     gesture: str | None
     onset: int
     offset: int
     subject: str
 
 
-def window_label(gesture: str | None, onset: int, offset: int, last_seen: int) -> int:
-    """Index in GESTURES of the window whose last seen frame is ``last_seen``, or AMBIGUOUS.
+def window_labels(
+    gesture: str | None, onset: int, offset: int, last_seen: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """Index in GESTURES of the windows whose last seen frame is given, or AMBIGUOUS.
 
     A gesture is going on from 8 frames after its onset until 10 frames before its offset.
     Outside onset to offset it is idle; the two margins are ambiguous.
     """
     if gesture is None:
-        return AMBIGUOUS
+        return np.full(len(last_seen), AMBIGUOUS)
     idle = GESTURES.index(IDLE)
-    if gesture == IDLE or last_seen < onset or last_seen >= offset:
-        return idle
-    if onset + STARTED_FRAMES <= last_seen <= offset - LEAVING_FRAMES:
-        return GESTURES.index(gesture)
-    return AMBIGUOUS
+    if gesture == IDLE:
+        return np.full(len(last_seen), idle)
+    started = last_seen >= onset + STARTED_FRAMES
+    shown = started & (last_seen <= offset - LEAVING_FRAMES)
+    outside = (last_seen < onset) | (last_seen >= offset)
+    return np.select([shown, outside], [GESTURES.index(gesture), idle], AMBIGUOUS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,29 +122,27 @@ def cut(recordings: Iterable[Recording], stride: int = 1) -> WindowSet:
     Raises:
         InvalidInput: If no recording is long enough.
     """
-    observed: list[np.ndarray] = []
-    clean: list[np.ndarray] = []
-    rows: list[tuple[int, int, int, int]] = []
+    observed: list[NDArray[np.float32]] = []
+    clean: list[NDArray[np.float32]] = []
+    columns: list[NDArray[np.int64]] = []
     base = 0
     for number, recording in enumerate(recordings):
         frames = len(recording.observed)
-        for start in range(0, frames - CLASSIFIED_FRAMES + 1, stride):
-            last = start + SEEN_FRAMES - 1
-            label = window_label(recording.gesture, recording.onset, recording.offset, last)
-            rows.append((base + start, label, last - recording.onset, number))
+        starts = np.arange(0, frames - CLASSIFIED_FRAMES + 1, stride)
+        last = starts + SEEN_FRAMES - 1
+        labels = window_labels(recording.gesture, recording.onset, recording.offset, last)
+        numbers = np.full(len(starts), number)
+        columns.append(np.stack([base + starts, labels, last - recording.onset, numbers]))
         observed.append(recording.observed)
         clean.append(recording.clean)
         base += frames
-    if not rows:
+    table = np.concatenate(columns, axis=1) if columns else np.empty((4, 0), np.int64)
+    if not table.size:
         raise InvalidInput(f"no recording has {CLASSIFIED_FRAMES} frames: give longer ones")
-    starts, labels, since, numbers = torch.tensor(rows, dtype=torch.int64).T
     return WindowSet(
         torch.from_numpy(np.concatenate(observed)).float(),
         torch.from_numpy(np.concatenate(clean)).float(),
-        starts,
-        labels,
-        since,
-        numbers,
+        *torch.from_numpy(table),
     )
 
 

@@ -150,7 +150,7 @@ def false_reactions(
         "minutes": round(minutes, 1),
         "false_reactions": len(found),
         "per_10_minutes": round(10 * len(found) / minutes, 2),
-        "gestures": sorted(found),
+        "gestures": {name: found.count(name) for name in GESTURES if name in found},
     }
 
 

@@ -66,7 +66,9 @@ class TrainConfig:
         learning_rate: Peak rate (AdamW, warm-up, then a cosine to zero).
         weight_decay: Of all weights.
         smoothing: Share of the label that is spread over all classes.
-        predicted: Share of windows that end in predicted frames; the rest end in true ones.
+        true_future: Share of windows that end in true frames.
+        last_frame: Share of windows completed by the last seen frame, as the server does when
+            it has no predictor; the rest end in predicted frames.
         idle: Share of idle windows in a batch.
         ema: Decay of the averaged weights.
         validate_every: Updates between two validations.
@@ -74,20 +76,33 @@ class TrainConfig:
     """
 
     network: NetworkConfig = NetworkConfig()
-    steps: int = 8_000
+    steps: int = 5_000
     batch: int = 64
     learning_rate: float = 1e-3
     weight_decay: float = 0.02
     smoothing: float = 0.02
-    predicted: float = 0.75
-    idle: float = 0.4
+    true_future: float = 0.2
+    last_frame: float = 0.1
+    idle: float = 0.55
     ema: float = 0.998
     validate_every: int = 500
-    synthetic_sequences: int = 2_000
+    synthetic_sequences: int = 5_000
 
     def __post_init__(self) -> None:
-        if not 0 <= self.predicted <= 1:
-            raise ConfigError(f"predicted is {self.predicted}: choose a share from 0 to 1")
+        if not 0 <= self.true_future <= 1 - self.last_frame <= 1:
+            raise ConfigError(
+                f"true_future is {self.true_future} and last_frame {self.last_frame}: choose "
+                "shares that add up to at most 1"
+            )
+
+    @property
+    def seen_only(self) -> bool:
+        """Whether the network gets nothing but the seen second."""
+        return self.last_frame == 1
 
 
-CONFIGS: dict[str, TrainConfig] = {"server": TrainConfig()}
+CONFIGS: dict[str, TrainConfig] = {
+    "server": TrainConfig(),
+    "seen_only": TrainConfig(true_future=0.0, last_frame=1.0),
+}
+"""``seen_only`` is the yardstick: the same network and budget without any prediction."""

@@ -1,7 +1,7 @@
 """Training of the classifier on what was seen and what a frozen predictor expects."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,8 +22,6 @@ from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
 
 AUGMENTATION = Augmentation(yaw=0.35, scale=0.1, noise_m=0.02, drop=0.08)
-LAST_FRAME = 0.1
-"""Share of windows completed by the last seen frame, as the server does without a predictor."""
 IDLE_INDEX = GESTURES.index(IDLE)
 
 
@@ -73,7 +71,7 @@ class Pools:
 def complete(
     predictor: nn.Module,
     observed: torch.Tensor,
-    true_share: float,
+    config: TrainConfig,
     undecided: torch.Tensor,
     generator: torch.Generator,
 ) -> torch.Tensor:
@@ -82,7 +80,7 @@ def complete(
     Args:
         predictor: Frozen; seen (B, 25, 9, 3) -> future (B, 50, 9, 3).
         observed: Shape (B, 75, 9, 3).
-        true_share: Share of windows that keep their true future.
+        config: Its shares of true, held and predicted futures.
         undecided: Shape (B,), whether the true future shows what the label does not say.
         generator: Where the choice comes from.
     """
@@ -90,8 +88,8 @@ def complete(
     with torch.no_grad():
         predicted = predictor(seen)
     draw = torch.rand(len(observed), generator=generator).to(observed.device)
-    keep = (draw < true_share) & ~undecided
-    hold = draw > 1 - LAST_FRAME
+    keep = (draw < config.true_future) & ~undecided
+    hold = draw >= 1 - config.last_frame
     future = torch.where(keep[:, None, None, None], observed[:, SEEN_FRAMES:], predicted)
     future = torch.where(hold[:, None, None, None], hold_last(seen), future)
     return torch.cat([seen, future], dim=1)
@@ -100,18 +98,15 @@ def complete(
 @torch.no_grad()
 def window_logits(
     classifier: nn.Module,
-    predictor: nn.Module | None,
+    predictor: Callable[[torch.Tensor], torch.Tensor],
     windows: WindowSet,
     device: torch.device,
 ) -> torch.Tensor:
-    """Logits (N, C) with predicted futures, or with true ones where ``predictor`` is None."""
+    """Logits (N, C) with the futures that ``predictor`` gives for the seen frames."""
     logits = []
     for index in torch.split(torch.arange(len(windows)), 512):
-        motion = windows.frames(index)[0].to(device)
-        if predictor is not None:
-            seen = motion[:, :SEEN_FRAMES]
-            motion = torch.cat([seen, predictor(seen)], dim=1)
-        logits.append(classifier(motion).cpu())
+        seen = windows.frames(index)[0][:, :SEEN_FRAMES].to(device)
+        logits.append(classifier(torch.cat([seen, predictor(seen)], dim=1)).cpu())
     return torch.cat(logits)
 
 
@@ -211,16 +206,15 @@ def train(
             labels = training.labels[index].to(device)
             since = training.since_onset[index]
             undecided = ((since < 0) & (since > -PREDICTED_FRAMES)).to(device)
-            motion = complete(
-                predictor, observed.to(device), 1 - config.predicted, undecided, generator
-            )
+            motion = complete(predictor, observed.to(device), config, undecided, generator)
             terms = trainer.step(motion, labels)
             progress.advance(terms)
             done = step + 1
             if done % config.validate_every and done != config.steps:
                 continue
             network = trainer.ema.network
-            logits = window_logits(network, predictor, validation, device)
+            futures = hold_last if config.seen_only else predictor
+            logits = window_logits(network, futures, validation, device)
             loss = balanced_loss(logits, validation.labels)
             if loss < best:
                 best = loss
