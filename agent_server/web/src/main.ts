@@ -1,9 +1,9 @@
 import "./styles/base.css";
-import "./styles/layout.css";
 import "./styles/view.css";
 import "./styles/panels.css";
 import "./styles/room.css";
 import "./styles/log.css";
+import "./styles/layout.css";
 
 import { App } from "./app.ts";
 import { placeOf } from "./place.ts";
@@ -45,6 +45,7 @@ const place = placeOf(location.href);
 const stage = openStage(place.isStepped);
 
 if (place.isStepped) {
+  document.documentElement.dataset["stepped"] = "";
   let now = 0;
   const app = new App(place, stage, now);
   window.agentPage = {

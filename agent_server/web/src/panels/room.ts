@@ -110,7 +110,7 @@ export class RoomPanel {
     for (const name of names) {
       const picture = h("span");
       const word = h("span", { class: "tile-state" });
-      const title = h("span", { class: "tile-name" }, objectWord(name));
+      const title = h("span", { class: "tile-name" }, sentenceCase(name));
       const root = h("li", { class: "tile" }, picture, title, word);
       this.#tile.set(name, { root, picture, word, state: "" });
       this.#tiles.append(root);
@@ -120,11 +120,7 @@ export class RoomPanel {
 
 export function stepWords(step: Step): string {
   const words = sentenceCase(step.action);
-  return step.target == null ? words : `${words} ${objectWord(step.target).toLowerCase()}`;
-}
-
-function objectWord(name: string): string {
-  return name === "hifi" ? "Hi-fi" : sentenceCase(name);
+  return step.target == null ? words : `${words} ${sentenceCase(step.target).toLowerCase()}`;
 }
 
 function statusOf({ command, reason }: Running, { state, isReported }: Progress): string {

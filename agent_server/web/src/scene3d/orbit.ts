@@ -4,7 +4,7 @@ import { MathUtils, Spherical, Vector3, type PerspectiveCamera } from "three";
 import { share } from "./smooth.ts";
 
 /** Azimuth 0 looks from the sensor. A little to the side shows the depth of a movement. */
-const HOME = { azimuth: 0.3, height: 0.12, distance: 2.05 } as const;
+const HOME = { azimuth: 0.3, height: 0.12, distance: 2.25 } as const;
 const LIMITS = { height: [-0.5, 1.3], distance: [1.1, 5] } as const;
 const RADIANS_PER_PIXEL = 0.006;
 const TURN_TAU_MS = 70;
@@ -13,7 +13,7 @@ const STILL = 1e-4;
 
 export class Orbit {
   /** What the camera looks at, in metres; it follows slowly. */
-  readonly target = new Vector3(0, 0.25, 2.4);
+  readonly target = new Vector3(0, 0.1, 2.4);
 
   readonly #camera: PerspectiveCamera;
   readonly #isCalm: boolean;

@@ -15,9 +15,10 @@ import { Ghost } from "./ghost.ts";
 import { Orbit } from "./orbit.ts";
 
 const FIELD_OF_VIEW = 32;
-/** From the navel up to the middle of what is shown, and down to the grid, in metres. */
-const CENTRE_ABOVE_NAVEL_M = 0.26;
-const GRID_BELOW_NAVEL_M = 0.42;
+/** From the navel up to the middle of what is shown, and down to the grid, in metres: between
+ * them there is room for hands that hang and hands that wave. */
+const CENTRE_ABOVE_NAVEL_M = 0.1;
+const GRID_BELOW_NAVEL_M = 0.58;
 /** A picture narrower than this, width to height, steps back to keep the arms in view. */
 const FULL_ASPECT = 1.05;
 

@@ -15,7 +15,7 @@ const OUTCOMES: Readonly<Record<string, string>> = {
 
 /** `close_window` -> `Close window`. */
 export function sentenceCase(name: string): string {
-  const words = name.replaceAll("_", " ");
+  const words = name.replaceAll("_", " ").replaceAll("hifi", "hi-fi");
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
@@ -23,10 +23,16 @@ export function outcomeWord(outcome: string): string {
   return OUTCOMES[outcome] ?? sentenceCase(outcome);
 }
 
-/** A decision's reason without the gesture before it, which is shown beside it. */
-export function reasonOf({ gesture, reason }: Pick<Decision, "gesture" | "reason">): string {
+/**
+ * A decision's reason without the gesture before it, which is shown beside it; a command's begins
+ * with the state of the room that asked for it.
+ */
+export function reasonOf(decision: Pick<Decision, "gesture" | "reason" | "outcome" | "scene">): string {
+  const { gesture, reason, outcome, scene } = decision;
   const prefix = `${gesture}: `;
-  return sentenceCase(reason.startsWith(prefix) ? reason.slice(prefix.length) : reason);
+  const rest = reason.startsWith(prefix) ? reason.slice(prefix.length) : reason;
+  const state = outcome === "command" ? scene?.precondition : null;
+  return sentenceCase(state == null ? rest : `${state}, ${rest}`);
 }
 
 /** Nanoseconds on the session's time line -> `1:04.2`. */
