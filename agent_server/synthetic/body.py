@@ -1,4 +1,4 @@
-"""Forward geometry of a body: rigid bones, two-bone inverse kinematics, soft joint limits.
+"""Forward geometry of a body: where all landmarks are when hands and trunk are told where to be.
 
 Body frames have x to the person's right, y up and z to the back: for somebody who faces the
 sensor they are the camera frame. Points beside an arm or a leg are written outwards, up and
@@ -11,6 +11,16 @@ from enum import IntEnum
 import numpy as np
 
 from agent_server.domain.arrays import Float64
+from agent_server.synthetic.limbs import (
+    elbow_direction,
+    pushed_out,
+    rotation,
+    smooth_step,
+    turn,
+    two_bone,
+    unit,
+    unturn,
+)
 from agent_server.synthetic.person import Person, Placement
 
 
@@ -46,8 +56,6 @@ class BodyJoint(IntEnum):
 
 SIDE_SIGNS: tuple[float, float] = (-1.0, 1.0)
 """Sign of x on the left and on the right side."""
-MAX_FLEXION_RAD = np.radians(150.0)
-"""Largest flexion of elbow and knee (AAOS norms: 150 and 135 degrees)."""
 HEAD_RADII_M = (0.095, 0.140, 0.115)
 """Half axes of what a wrist cannot enter at the head of a reference person."""
 TRUNK_RADII_M = (0.185, 0.135)
@@ -102,110 +110,6 @@ class BodyMotion:
     head: Float64
 
 
-def rotation(pitch: Float64, roll: Float64, yaw: Float64) -> Float64:
-    """Rotation matrices of shape (T, 3, 3): yaw about y, then pitch forward, then roll."""
-    cp, sp, cr, sr = np.cos(pitch), np.sin(pitch), np.cos(roll), np.sin(roll)
-    cy, sy = np.cos(yaw), np.sin(yaw)
-    out = np.empty((len(cp), 3, 3))
-    out[:, 0, 0] = cy * cr - sy * sp * sr
-    out[:, 0, 1] = -cy * sr - sy * sp * cr
-    out[:, 0, 2] = sy * cp
-    out[:, 1, 0] = cp * sr
-    out[:, 1, 1] = cp * cr
-    out[:, 1, 2] = sp
-    out[:, 2, 0] = -sy * cr - cy * sp * sr
-    out[:, 2, 1] = sy * sr - cy * sp * cr
-    out[:, 2, 2] = cy * cp
-    return out
-
-
-def turn(frames: Float64, points: Float64) -> Float64:
-    """``frames`` (T, 3, 3) applied to ``points`` (T, 3) or (3,): shape (T, 3)."""
-    if points.ndim == 1:
-        return np.asarray(frames @ points)
-    return np.asarray((frames @ points[:, :, None])[:, :, 0])
-
-
-def unturn(frames: Float64, vectors: Float64) -> Float64:
-    """The inverse of :func:`turn` for vectors of shape (T, 3)."""
-    return np.asarray((vectors[:, None, :] @ frames)[:, 0, :])
-
-
-def _unit(vectors: Float64) -> Float64:
-    length = np.sqrt((vectors * vectors).sum(axis=1, keepdims=True))
-    return np.asarray(vectors / np.maximum(length, 1e-9))
-
-
-_AHEAD = np.array([0.30, -0.10, -0.95]) / np.linalg.norm([0.30, -0.10, -0.95])
-_DOWNWARDS = np.array([0.0, _AHEAD[2], -_AHEAD[1]]) / np.hypot(_AHEAD[1], _AHEAD[2])
-_OUTWARDS = np.cross(_DOWNWARDS, _AHEAD)
-
-
-def elbow_direction(line: Float64, swivel_rad: Float64) -> Float64:
-    """Where the elbow points, at right angles to the line from shoulder to wrist.
-
-    The direction is fixed for an arm that points ahead and carried to every other direction by
-    the smallest rotation. Such a field has one singular direction only, which is put where no
-    arm can reach: behind the shoulder and inwards. (A constant pole vector has two, within reach.)
-
-    Args:
-        line: Shape (T, 3), outwards, up and back, of any length.
-        swivel_rad: Shape (T,), 0 hangs down, a quarter turn points outwards.
-
-    Returns:
-        Shape (T, 3), outwards, up and back, unit length.
-    """
-    along = _unit(line)
-    ahead = np.cos(swivel_rad)[:, None] * _DOWNWARDS + np.sin(swivel_rad)[:, None] * _OUTWARDS
-    lift = (along * ahead).sum(axis=1) / np.maximum(1.0 + along @ _AHEAD, 0.02)
-    return _unit(ahead - lift[:, None] * (_AHEAD + along))
-
-
-def two_bone(
-    root: Float64, target: Float64, pole: Float64, upper: float, lower: float
-) -> tuple[Float64, Float64]:
-    """Where the middle and the end of a two-bone chain come to lie.
-
-    Args:
-        root: Shape (T, 3), shoulder or hip.
-        target: Shape (T, 3), where the end should be.
-        pole: Shape (T, 3), direction into which the middle joint points.
-        upper: Length of the first bone.
-        lower: Length of the second bone.
-
-    Returns:
-        The middle and the end joint, shape (T, 3) each; the end falls short of a target that
-        the chain cannot reach within its flexion limits.
-    """
-    reach = target - root
-    distance = np.sqrt((reach * reach).sum(axis=1))
-    along = reach / np.maximum(distance, 1e-9)[:, None]
-    bent = upper * upper + lower * lower + 2 * upper * lower * np.cos(MAX_FLEXION_RAD)
-    distance = _limited(distance, float(np.sqrt(bent)), 0.997 * (upper + lower))
-    middle = (upper * upper - lower * lower + distance * distance) / (2 * distance)
-    height = np.sqrt(np.maximum(upper * upper - middle * middle, 0.0))
-    aside = _unit(pole - (pole * along).sum(axis=1, keepdims=True) * along)
-    return (
-        root + middle[:, None] * along + height[:, None] * aside,
-        root + distance[:, None] * along,
-    )
-
-
-def _limited(distance: Float64, low: float, high: float) -> Float64:
-    soft = 0.006
-    raised = low + soft * np.logaddexp(0.0, (distance - low) / soft)
-    lowered = high - soft * np.logaddexp(0.0, (high - raised) / soft)
-    return np.asarray(np.clip(lowered, low, high))
-
-
-def _pushed(local: Float64, radii: tuple[float, ...], share: Float64 | float) -> Float64:
-    """Points of shape (T, K) pushed out of an ellipsoid; ``share`` fades the push."""
-    relative = np.sqrt(((local / np.asarray(radii)) ** 2).sum(axis=1))
-    out = relative + 0.06 * np.logaddexp(0.0, (1.0 - relative) / 0.06)
-    factor = 1.0 + share * (out / np.maximum(relative, 0.05) - 1.0)
-    return np.asarray(local * factor[:, None])
-
-
 def _clear_of_body(
     wrist: Float64,
     centre: tuple[Float64, Float64],
@@ -216,12 +120,12 @@ def _clear_of_body(
     scale = person.scale
     (head, base), (head_frame, chest_frame) = centre, frames
     local = unturn(head_frame, wrist - head)
-    wrist = head + turn(head_frame, _pushed(local, tuple(r * scale for r in HEAD_RADII_M), 1.0))
+    wrist = head + turn(head_frame, pushed_out(local, tuple(r * scale for r in HEAD_RADII_M), 1.0))
     local = unturn(chest_frame, wrist - base)
     below = np.clip((-local[:, 1] / scale - 0.02) / 0.12, 0.0, 1.0)
     above = np.clip((local[:, 1] / scale + 0.62) / 0.12, 0.0, 1.0)
     share = below * below * (3 - 2 * below) * above * above * (3 - 2 * above)
-    flat = _pushed(local[:, ::2], tuple(r * scale for r in TRUNK_RADII_M), share)
+    flat = pushed_out(local[:, ::2], tuple(r * scale for r in TRUNK_RADII_M), share)
     local = np.stack([flat[:, 0], local[:, 1], flat[:, 1]], axis=1)
     return base + turn(chest_frame, local)
 
@@ -296,7 +200,7 @@ def _shoulder(person: Person, sign: float, wrist: Float64) -> Float64:
     up = np.clip((wrist[:, 1] + person.shoulder_drop_m) / arm, -1.0, 1.0)
     forward = np.clip(-wrist[:, 2] / arm, -0.3, 1.0)
     inward = np.clip(-sign * wrist[:, 0] / arm, -1.0, 1.0)
-    lift = 0.36 * minimum_smooth((up + 0.25) / 1.25)
+    lift = 0.36 * smooth_step((up + 0.25) / 1.25)
     swing = 0.22 * forward + 0.14 * inward
     base = np.arctan2(person.shoulder_drop_m, person.shoulder_half_m)
     length = np.hypot(person.shoulder_drop_m, person.shoulder_half_m)
@@ -307,19 +211,13 @@ def _shoulder(person: Person, sign: float, wrist: Float64) -> Float64:
     )
 
 
-def minimum_smooth(values: Float64) -> Float64:
-    """0 below 0, 1 above 1, smooth between."""
-    x = np.clip(values, 0.0, 1.0)
-    return np.asarray(x * x * (3 - 2 * x))
-
-
 def _fill_hand(joints: Float64, first: int, person: Person, fingers: Float64) -> None:
     """Hand, fingertip and thumb, which bend by at most some 60 degrees from the forearm."""
     elbow, wrist = joints[:, first + 1], joints[:, first + 2]
     fore = (wrist - elbow) / person.forearm_m
-    direction = _unit(fore + fingers)
-    inward = _unit(joints[:, BodyJoint.NECK_BASE] - wrist + 1e-3)
-    thumb = _unit(inward - (inward * direction).sum(axis=1, keepdims=True) * direction)
+    direction = unit(fore + fingers)
+    inward = unit(joints[:, BodyJoint.NECK_BASE] - wrist + 1e-3)
+    thumb = unit(inward - (inward * direction).sum(axis=1, keepdims=True) * direction)
     joints[:, first + 3] = wrist + 0.42 * person.hand_m * direction
     joints[:, first + 4] = wrist + person.hand_m * direction
     joints[:, first + 5] = wrist + person.hand_m * (0.38 * direction + 0.34 * thumb)
@@ -346,4 +244,4 @@ def _fill_leg(
     knee, ankle = two_bone(hip, ankle, ahead, person.thigh_m, person.shank_m)
     toes = turn(ground, np.array([0.2 * sign, -0.25, -0.95]))
     joints[:, first], joints[:, first + 1], joints[:, first + 2] = hip, knee, ankle
-    joints[:, first + 3] = ankle + person.foot_m * _unit(toes)
+    joints[:, first + 3] = ankle + person.foot_m * unit(toes)

@@ -266,27 +266,6 @@ def _change_rest(pen: Pen) -> None:
     pen.lower(hands, arrival + pen.uniform(1.0, 4.0), median_s=1.0)
 
 
-def _sit_or_stand(pen: Pen) -> None:
-    """Sits down and gets up again, or the other way round."""
-    drop = pen.person.thigh_m + pen.person.shank_m - 0.5 * pen.person.scale + 0.04
-    up = drop if pen.placement.seated else -drop
-    ahead = -0.28 if pen.placement.seated else 0.30
-    change = pen.seconds(1.3)
-    stay = pen.uniform(0.3, 2.0)
-    bend = degrees(pen.uniform(22, 45), 0, 0)
-    at = pen.start_s
-    for value in ((0.0, up, ahead), ORIGIN):
-        pen.turn("trunk", at, 0.5 * change, bend)
-        pen.turn("trunk", at + 0.5 * change, 0.6 * change, ORIGIN)
-        at = pen.turn("pelvis", at, change, value) + stay
-    if pen.chance(0.5):
-        knees = pen.around((0.14, 0.12, -0.28), 0.03)
-        start, end = pen.start_s, pen.start_s + change
-        for side in BOTH:
-            pen.reach(side, start, 0.7 * change, "pelvis", knees)
-        pen.lower(BOTH, end)
-
-
 EVERYDAY: Mapping[str, tuple[float, Writer]] = MappingProxyType(
     {
         "still": (6.0, _still),
@@ -315,7 +294,6 @@ EVERYDAY: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "clothes": (0.8, _clothes),
         "half_way": (1.5, _half_way),
         "change_rest": (1.2, _change_rest),
-        "sit_or_stand": (1.5, _sit_or_stand),
     }
 )
 """Action -> (how often, what writes it)."""

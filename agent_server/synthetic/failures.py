@@ -6,7 +6,8 @@ import numpy as np
 
 from agent_server.domain.arrays import Float64
 from agent_server.domain.skeleton import CoreJoint
-from agent_server.synthetic.body import BodyMotion, unturn
+from agent_server.synthetic.body import BodyMotion
+from agent_server.synthetic.limbs import unturn
 
 ARMS = (
     (CoreJoint.LEFT_ELBOW, CoreJoint.LEFT_WRIST),

@@ -7,11 +7,14 @@ import numpy as np
 
 from agent_server.domain.gesture import IDLE
 from agent_server.errors import InvalidInput
+from agent_server.synthetic.armwork import ARMWORK
 from agent_server.synthetic.everyday import EVERYDAY
+from agent_server.synthetic.locomotion import LOCOMOTION
 from agent_server.synthetic.script import Pen, Script, Writer
-from agent_server.synthetic.vigorous import VIGOROUS
 
-ACTIONS: Mapping[str, tuple[float, Writer]] = MappingProxyType({**EVERYDAY, **VIGOROUS})
+ACTIONS: Mapping[str, tuple[float, Writer]] = MappingProxyType(
+    {**EVERYDAY, **LOCOMOTION, **ARMWORK}
+)
 """Action -> (how often, what writes it)."""
 
 ON_FOOT = frozenset({"walk", "jog", "duck", "kick", "lunge", "jump", "bow"})

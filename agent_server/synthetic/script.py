@@ -1,13 +1,13 @@
 """Writes scripts: the movements of arms, trunk, head and feet that make up one action."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from agent_server.domain.arrays import Float64
+from agent_server.synthetic.paths import detour, from_neck, natural_swivel
 from agent_server.synthetic.performance import Frame, Reach
 from agent_server.synthetic.person import Person, Placement
 from agent_server.synthetic.trajectory import ORIGIN, Move, Oscillation, Vector
@@ -203,6 +203,20 @@ class Pen:
             arrival = max(arrival, end)
         return arrival
 
+    def through(
+        self, hands: Hands, spots: Sequence[Vector], median_s: float, *, spread: float = 0.05
+    ) -> float:
+        """Leads hands through places of the chest frame without stopping; returns the end."""
+        at = self.start_s
+        duration = self.seconds(median_s)
+        for spot in spots:
+            shared = self.around(spot, spread)
+            for side in hands:
+                own = self.around(shared, 0.02)
+                self.reach(side, at, duration, "chest", own, bow=self.around(ORIGIN, 0.03))
+            at += 0.85 * duration
+        return at + 0.15 * duration
+
     def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.85) -> float:
         """Brings hands back to rest; returns when the last one is there."""
         return self._rest_at(hands, self.rest, start_s, self.seconds(median_s))
@@ -317,57 +331,25 @@ def degrees(pitch: float, roll: float, yaw: float) -> Vector:
     return float(p), float(r), float(y)
 
 
-def from_neck(frame: Frame, point: Vector) -> Float64:
-    """About where a place of any frame lies in the chest frame of somebody upright."""
-    return np.asarray(point) + _FRAME_ORIGINS[frame]
-
-
-def natural_swivel(frame: Frame, point: Vector) -> float:
-    """By how many degrees an elbow turns out of its own accord with the wrist at ``point``.
-
-    More for hands across the body and high up, less for hands far out: medians of Kinect
-    recordings of free movement.
-    """
-    outwards, up, _ = from_neck(frame, point)
-    aside = float(np.clip(outwards - 0.19, -0.25, 0.35))
-    return 27.0 - 45.0 * aside + 55.0 * float(np.clip(up - 0.05, 0.0, 0.45))
-
-
-def detour(start: Float64, end: Float64, bow: Vector) -> Vector:
-    """Widens the bow of a path so that it leads around the trunk and clear of the shoulder.
-
-    A wrist that passes close to its own shoulder would whirl the elbow about.
+def flinch(pen: Pen, start_s: float, stop_s: float, pitch: float, spread: float = 6) -> None:
+    """Head and trunk give way while the hands are up: often, but not always.
 
     Args:
-        start: Where the wrist is, in the chest frame, outwards, up and back.
-        end: Where it goes.
-        bow: How far the path would swing out in its middle.
+        pen: What writes it.
+        start_s: When they begin to.
+        stop_s: When they are back.
+        pitch: Mean pitch of the head, in degrees.
+        spread: Its standard deviation.
     """
-    x, y, z = bow
-    if (start[2] > 0.06) != (end[2] > 0.06) and min(start[1], end[1]) < -0.2:
-        # To the back, or away from it, around the hip.
-        x += 0.8 * max(0.0, 0.3 - 0.5 * float(start[0] + end[0]))
-    share = np.linspace(0.1, 0.9, 9)[:, None]
-    straight = start + share * (end - start)
-    path = straight + 4 * share * (1 - share) * (x, y, z)
-    nearest = int(np.argmin(np.linalg.norm(path - _SHOULDER, axis=1)))
-    gap = float(np.linalg.norm(path[nearest] - _SHOULDER))
-    if gap < _CLEARANCE_M:
-        strength = 4 * float(share[nearest, 0] * (1 - share[nearest, 0]))
-        z -= (_CLEARANCE_M - gap + 0.04) / max(strength, 0.5)
-    return x, y, z
+    if pen.chance(0.6):
+        yaw = pen.rng.normal(0, 7)
+        roll = pen.rng.normal(0, 3)
+        turn = degrees(pen.rng.normal(pitch, spread), roll, yaw)
+        pen.turn_and_back("head", start_s, stop_s, turn, share=pen.uniform(0.2, 0.4))
+    if pen.chance(0.4):
+        turn = degrees(pen.rng.normal(0.4 * pitch, 4), pen.rng.normal(0, 2), pen.rng.normal(0, 5))
+        pen.turn_and_back("trunk", start_s, stop_s, turn, share=pen.uniform(0.2, 0.4))
 
-
-_FRAME_ORIGINS: Mapping[Frame, Vector] = MappingProxyType(
-    {
-        "chest": ORIGIN,
-        "upright": ORIGIN,
-        "head": (0.0, 0.17, -0.02),
-        "pelvis": (0.0, -0.54, 0.0),
-    }
-)
-_SHOULDER = np.array([0.19, -0.05, 0.0])
-_CLEARANCE_M = 0.22
 
 Writer = Callable[[Pen], None]
 """Writes the movements of one action with a pen."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from agent_server.domain.arrays import Float32, Float64, frozen
 from agent_server.domain.skeleton import CoreJoint, SkeletonFrame
@@ -20,7 +21,8 @@ from agent_server.domain.stamp import to_ns
 from agent_server.errors import InvalidInput
 from agent_server.synthetic.body import BodyMotion
 from agent_server.synthetic.failures import Weakness, exposure, fail
-from agent_server.synthetic.tables import TABLES, Places, place_core, place_table
+from agent_server.synthetic.noise import low_pass, speed, wander
+from agent_server.synthetic.tables import Places, native_table, place_core, place_table
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +42,7 @@ class Sensor:
         jitter_m: Error from frame to frame at 2 m, standard deviation.
         depth_factor: Error along z against the others.
         depth_scale: Standard deviation of a constant relative error of depth differences.
+        distance_power: How errors grow with the distance.
         lag_s: Time constant of the tracker's low-pass filter.
         weakness: How it fails on joints that are hard to see; None for never.
     """
@@ -56,6 +59,7 @@ class Sensor:
     jitter_m: float
     depth_factor: float
     depth_scale: float
+    distance_power: float
     lag_s: float
     weakness: Weakness | None
 
@@ -73,6 +77,7 @@ MOCAP = Sensor(
     jitter_m=0.0003,
     depth_factor=1.0,
     depth_scale=0.0,
+    distance_power=0.0,
     lag_s=0.0,
     weakness=None,
 )
@@ -89,6 +94,7 @@ KINECT_V2 = Sensor(
     jitter_m=0.0005,
     depth_factor=1.3,
     depth_scale=0.02,
+    distance_power=2.0,
     lag_s=0.030,
     weakness=Weakness(failures_hz=0.55, jump_m=(0.05, 0.15), inferred=0.85, untracked_hz=0.03),
 )
@@ -105,6 +111,7 @@ KINECT_V1 = Sensor(
     jitter_m=0.0003,
     depth_factor=1.2,
     depth_scale=0.03,
+    distance_power=2.0,
     lag_s=0.040,
     weakness=Weakness(failures_hz=0.8, jump_m=(0.05, 0.17), inferred=0.35, untracked_hz=0.01),
 )
@@ -121,9 +128,15 @@ WEBCAM = Sensor(
     jitter_m=0.0025,
     depth_factor=4.0,
     depth_scale=0.15,
+    distance_power=1.0,
     lag_s=0.040,
     weakness=Weakness(failures_hz=0.5, jump_m=(0.05, 0.15), inferred=0.7, untracked_hz=0.02),
 )
+REFERENCE_DISTANCE_M = 2.0
+STEPS_HZ = 5.0
+"""How often a stepped error changes."""
+_UNSURENESS = np.array([0.9, 0.7, 0.6, 0.8, 1.0, 1.2, 0.8, 1.0, 1.2])[:, None]
+"""Error of each core joint against the typical one: the trunk is surer than the arms."""
 SENSORS: tuple[Sensor, ...] = (KINECT_V2, KINECT_V1, MOCAP, WEBCAM)
 
 
@@ -193,19 +206,19 @@ def observe_frames(
     stamps = _ticks(motion.duration_s, sensor, rng)
     body = motion.at(stamps)
     core, core_confidence = _sense(body, sensor, rng)
-    table = TABLES[sensor.format]
-    clean = place_table(body, sensor.places)
-    error = core - place_core(body, sensor.places)
-    # A joint beside the core ones goes wrong as the core joint does that it hangs on.
-    positions = clean + error[:, table.follows]
-    smooth, _ = _wander(len(stamps), len(table.names), sensor, rng)
-    own = 0.5 * smooth + sensor.jitter_m * rng.standard_normal(positions.shape)
+    table = native_table(sensor.format)
+    clean = place_table(body, sensor.format, sensor.places)
+    # A joint beside the core ones goes wrong as the core joint does that it hangs on, and a
+    # little on its own.
+    error = (core - place_core(body, sensor.places))[:, table.follows]
+    smooth, _ = wander(len(stamps), len(table.follows), _period(sensor), 1.0, rng)
+    own = 0.5 * sensor.wander_m * smooth
+    own += sensor.jitter_m * rng.standard_normal(clean.shape)
     own[:, table.core] = 0.0
     confidence = core_confidence[:, table.follows].copy()
-    positions += own
-    hidden = _hidden_feet(clean, table.feet, sensor, rng)
+    hidden = _hidden_feet(clean[:, table.feet], rng)
     confidence[:, table.feet] = np.where(hidden, 0.5, confidence[:, table.feet])
-    joints = np.concatenate([np.round(positions, 3), confidence[..., None]], axis=2)
+    joints = np.concatenate([np.round(clean + error + own, 3), confidence[..., None]], axis=2)
     joints[..., :3] *= confidence[..., None] > 0
     return [
         SkeletonFrame(start_ns + to_ns(stamp), body_id, sensor.format, frozen(frame, (None, 4)))
@@ -217,75 +230,41 @@ def _ticks(duration_s: float, sensor: Sensor, rng: np.random.Generator) -> Float
     """When frames are taken: around the tick, some missing."""
     ticks = np.arange(0.0, duration_s, 1.0 / sensor.rate_hz)
     limit = 0.3 / sensor.rate_hz
-    jitter = np.clip(rng.normal(0, 1, len(ticks)) * sensor.tick_jitter_s, -limit, limit)
+    jitter = np.clip(rng.standard_normal(len(ticks)) * sensor.tick_jitter_s, -limit, limit)
     kept = rng.random(len(ticks)) >= sensor.lost_frames
     kept[0] = True
     return np.maximum(ticks + jitter, 0.0)[kept]
 
 
+def _period(sensor: Sensor) -> int:
+    """Frames after which slow errors are independent."""
+    return max(2, round(sensor.wander_s * sensor.rate_hz))
+
+
 def _sense(body: BodyMotion, sensor: Sensor, rng: np.random.Generator) -> tuple[Float64, Float64]:
-    """Core joints with all errors, and their confidence."""
+    """Core joints with all errors, shape (T, 9, 3), and their confidence, shape (T, 9)."""
     clean = place_core(body, sensor.places)
     n = len(clean)
-    root = clean[:, CoreJoint.NAVEL : CoreJoint.NAVEL + 1]
-    seen = clean.copy()
-    seen[..., 2] += rng.normal(0, sensor.depth_scale) * (clean[..., 2] - root[..., 2])
-    # Skeleton fitting puts joints consistently a little off; the trunk is surer than arms.
     axes = np.array([1.0, 1.0, sensor.depth_factor])
-    seen += sensor.fit_m * rng.standard_normal((9, 3)) * _SURENESS[:, None] * axes
+    depth = clean[..., 2] - clean[:, CoreJoint.NAVEL, None, 2]
+    seen = clean.copy()
+    seen[..., 2] += sensor.depth_scale * rng.standard_normal() * depth
+    seen += sensor.fit_m * rng.standard_normal((9, 3)) * _UNSURENESS * axes
+    far = (clean[..., 2:] / REFERENCE_DISTANCE_M) ** sensor.distance_power
+    smooth, steps = wander(n, 9, _period(sensor), STEPS_HZ / sensor.rate_hz, rng)
     exposed = exposure(clean, body)
-    far = (clean[..., 2:] / 2.0) ** 2 if sensor.lag_s else 1.0
-    smooth, steps = _wander(n, 9, sensor, rng)
-    moving = 0.10 + 0.8 * np.clip(_speed(clean, body.times_s), 0.0, 1.0)[..., None]
     hidden = exposed[..., None]
+    # Little at rest, more in motion; a joint that is hidden is steady but for steps.
+    moving = 0.10 + 0.8 * np.clip(speed(clean, body.times_s), 0.0, 1.0)[..., None]
     error = 1.5 * (moving + 0.3 * hidden) * smooth + 0.4 * (moving + 1.1 * hidden) * steps
-    seen += error * far * _SURENESS[:, None]
+    seen += sensor.wander_m * error * far * _UNSURENESS * axes
     confidence = np.ones((n, 9))
     if sensor.weakness is not None:
         fail(seen, confidence, exposed, body.times_s, sensor.weakness, rng)
     if sensor.lag_s:
-        seen = _low_pass(seen, sensor)
+        seen = low_pass(seen, sensor.lag_s * sensor.rate_hz)
     seen += sensor.jitter_m * rng.standard_normal((n, 9, 3)) * far * axes
     return seen, confidence
-
-
-def _speed(clean: Float64, times_s: Float64) -> Float64:
-    """Metres a second from the frame before, shape (T, 9)."""
-    step = np.zeros(clean.shape[:2])
-    step[1:] = np.linalg.norm(np.diff(clean, axis=0), axis=2)
-    return np.asarray(step / np.diff(times_s, prepend=times_s[0] - 1.0)[:, None])
-
-
-_SURENESS = np.array([0.9, 0.7, 0.6, 0.8, 1.0, 1.2, 0.8, 1.0, 1.2])
-
-
-def _wander(
-    n: int, joints: int, sensor: Sensor, rng: np.random.Generator
-) -> tuple[Float64, Float64]:
-    """Slow errors, shape (n, joints, 3) each: smooth ones, and ones that jump now and then."""
-    period = max(2, round(sensor.wander_s * sensor.rate_hz))
-    knots = rng.standard_normal((n // period + 3, joints, 3))
-    at = np.arange(n) / period
-    low = at.astype(int)
-    share = (at - low)[:, None, None]
-    share = share * share * (3 - 2 * share)
-    smooth = knots[low] * (1 - share) + knots[low + 1] * share
-    change = rng.random((n, joints)) < 5.0 / sensor.rate_hz
-    change[0] = True
-    held = np.maximum.accumulate(np.where(change, np.arange(n)[:, None], 0), axis=0)
-    steps = rng.standard_normal((n, joints, 3))[held, np.arange(joints)]
-    size = sensor.wander_m * np.array([1.0, 1.0, sensor.depth_factor])
-    return smooth * size, steps * size
-
-
-def _low_pass(seen: Float64, sensor: Sensor) -> Float64:
-    """The tracker's own smoothing: an exponential filter cut off after six frames."""
-    keep = np.exp(-1.0 / (sensor.rate_hz * sensor.lag_s))
-    weights = (1 - keep) * keep ** np.arange(6)
-    weights /= weights.sum()
-    padded = np.concatenate([np.repeat(seen[:1], 5, axis=0), seen])
-    n = len(seen)
-    return np.asarray(sum(w * padded[5 - k : 5 - k + n] for k, w in enumerate(weights)))
 
 
 def _kept(positions: Float64, confidence: Float64) -> Float64:
@@ -297,9 +276,7 @@ def _kept(positions: Float64, confidence: Float64) -> Float64:
     return np.asarray(positions[last, np.arange(positions.shape[1])])
 
 
-def _hidden_feet(
-    clean: Float64, feet: list[int], sensor: Sensor, rng: np.random.Generator
-) -> np.ndarray:
-    """Feet below the view (27 degrees half angle for v2) are inferred; now and then others."""
-    below = clean[:, feet, 1] < -0.5 * clean[:, feet, 2]
-    return np.asarray(below | (rng.random((1, len(feet))) < 0.05))
+def _hidden_feet(feet: Float64, rng: np.random.Generator) -> NDArray[np.bool_]:
+    """Feet below the view (27 degrees half angle) are inferred, now and then a foot in view."""
+    below = feet[..., 1] < -0.5 * feet[..., 2]
+    return np.asarray(below | (rng.random((1, feet.shape[1])) < 0.05))

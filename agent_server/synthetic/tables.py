@@ -1,4 +1,4 @@
-"""Where each sensor puts its joints in a body, and the order in which it names them.
+"""Where each sensor puts its joints in a body.
 
 Skeletons of different sensors differ by constant offsets: Kinect v1 puts the shoulders some
 6 cm below the joint's centre and the wrist short of it, Kinect v2's SpineShoulder lies below
@@ -8,13 +8,17 @@ measured on recordings of 20 people (medians), those of v2 follow the SDK's samp
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
 from agent_server.domain.arrays import Float64
-from agent_server.synthetic.body import SIDE_SIGNS, BodyJoint, BodyMotion, turn
+from agent_server.domain.skeleton import CoreJoint
+from agent_server.skeleton.formats import get_format
+from agent_server.synthetic.body import SIDE_SIGNS, BodyJoint, BodyMotion
+from agent_server.synthetic.limbs import turn
 
 Places = Literal["marker", "kinect_v1", "kinect_v2", "webcam"]
 
@@ -28,6 +32,7 @@ class Offsets:
         neck: In the chest's frame, from the neck's base.
         navel: In the chest's frame, from the navel.
         shoulder: Outwards, up and back in the chest's frame, from the shoulder joint.
+        hips: In the chest's frame, from the hips and the middle between them.
         upper_arm: Length of the upper arm as the sensor believes it, against the true one; its
             elbow is drawn most of the way to where that puts it.
         forearm: The same for the forearm; the wrist gives way less.
@@ -37,17 +42,26 @@ class Offsets:
     neck: tuple[float, float, float] = (0.0, 0.0, 0.0)
     navel: tuple[float, float, float] = (0.0, 0.0, 0.0)
     shoulder: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    hips: tuple[float, float, float] = (0.0, 0.0, 0.0)
     upper_arm: float = 1.0
     forearm: float = 1.0
 
 
 CORE_PLACES: Mapping[Places, Offsets] = MappingProxyType(
     {
-        "marker": Offsets(),
+        "marker": Offsets(
+            head=(0.0, 0.012, 0.0),
+            neck=(0.0, -0.030, 0.0),
+            navel=(0.0, 0.100, 0.0),
+            shoulder=(0.050, -0.030, 0.0),
+            upper_arm=1.10,
+            forearm=0.92,
+        ),
         "kinect_v1": Offsets(
             head=(0.0, 0.012, -0.010),
             navel=(0.0, 0.025, 0.0),
             shoulder=(-0.022, -0.062, 0.0),
+            hips=(0.0, 0.09, 0.0),
             upper_arm=0.79,
             forearm=0.91,
         ),
@@ -58,85 +72,91 @@ CORE_PLACES: Mapping[Places, Offsets] = MappingProxyType(
             upper_arm=0.89,
             forearm=0.96,
         ),
-        "webcam": Offsets(head=(0.0, -0.01, 0.0), neck=(0.0, -0.045, 0.0)),
+        "webcam": Offsets(
+            head=(0.0, -0.010, 0.0), neck=(0.0, -0.010, 0.0), navel=(0.0, 0.080, 0.0)
+        ),
     }
 )
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
-    """A sensor's own joints.
+class NativeTable:
+    """A sensor's own joints, in the order of its format.
 
     Attributes:
-        names: In the sensor's order.
-        body: Landmark that each joint is placed at, unless it is a core joint.
+        landmarks: Landmark that each joint is placed at, unless it is a core joint.
         core: Index of each of the nine core joints in the table.
         follows: Core joint whose errors and confidence each joint shares.
         feet: Indices of ankles and feet.
+        hips: Indices of the hips and the joint between them.
     """
 
-    names: tuple[str, ...]
-    body: list[int]
+    landmarks: list[int]
     core: list[int]
     follows: list[int]
     feet: list[int]
+    hips: list[int]
 
 
-def _table(rows: list[tuple[str, BodyJoint, int, bool]]) -> Table:
-    core = [0] * 9
-    for index, (_, _, joint, is_core) in enumerate(rows):
-        if is_core:
-            core[joint] = index
-    return Table(
-        names=tuple(row[0] for row in rows),
-        body=[int(row[1]) for row in rows],
-        core=core,
-        follows=[row[2] for row in rows],
-        feet=[i for i, row in enumerate(rows) if "Ankle" in row[0] or "Foot" in row[0]],
-    )
-
-
-_B = BodyJoint
-TABLES: Mapping[str, Table] = MappingProxyType(
+_TRUNK: Mapping[str, tuple[int, int]] = MappingProxyType(
     {
-        "kinect_v2": _table(
-            [
-                ("SpineBase", _B.PELVIS, 2, False), ("SpineMid", _B.NAVEL, 2, True),
-                ("Neck", _B.NECK, 1, False), ("Head", _B.HEAD, 0, True),
-                ("ShoulderLeft", _B.LEFT_SHOULDER, 3, True),
-                ("ElbowLeft", _B.LEFT_ELBOW, 4, True),
-                ("WristLeft", _B.LEFT_WRIST, 5, True), ("HandLeft", _B.LEFT_HAND, 5, False),
-                ("ShoulderRight", _B.RIGHT_SHOULDER, 6, True),
-                ("ElbowRight", _B.RIGHT_ELBOW, 7, True),
-                ("WristRight", _B.RIGHT_WRIST, 8, True), ("HandRight", _B.RIGHT_HAND, 8, False),
-                ("HipLeft", _B.LEFT_HIP, 2, False), ("KneeLeft", _B.LEFT_KNEE, 2, False),
-                ("AnkleLeft", _B.LEFT_ANKLE, 2, False), ("FootLeft", _B.LEFT_FOOT, 2, False),
-                ("HipRight", _B.RIGHT_HIP, 2, False), ("KneeRight", _B.RIGHT_KNEE, 2, False),
-                ("AnkleRight", _B.RIGHT_ANKLE, 2, False), ("FootRight", _B.RIGHT_FOOT, 2, False),
-                ("SpineShoulder", _B.NECK_BASE, 1, True),
-                ("HandTipLeft", _B.LEFT_TIP, 5, False), ("ThumbLeft", _B.LEFT_THUMB, 5, False),
-                ("HandTipRight", _B.RIGHT_TIP, 8, False),
-                ("ThumbRight", _B.RIGHT_THUMB, 8, False),
-            ]
-        ),
-        "kinect_v1": _table(
-            [
-                ("HipCenter", _B.PELVIS, 2, False), ("Spine", _B.NAVEL, 2, True),
-                ("ShoulderCenter", _B.NECK_BASE, 1, True), ("Head", _B.HEAD, 0, True),
-                ("ShoulderLeft", _B.LEFT_SHOULDER, 3, True),
-                ("ElbowLeft", _B.LEFT_ELBOW, 4, True),
-                ("WristLeft", _B.LEFT_WRIST, 5, True), ("HandLeft", _B.LEFT_HAND, 5, False),
-                ("ShoulderRight", _B.RIGHT_SHOULDER, 6, True),
-                ("ElbowRight", _B.RIGHT_ELBOW, 7, True),
-                ("WristRight", _B.RIGHT_WRIST, 8, True), ("HandRight", _B.RIGHT_HAND, 8, False),
-                ("HipLeft", _B.LEFT_HIP, 2, False), ("KneeLeft", _B.LEFT_KNEE, 2, False),
-                ("AnkleLeft", _B.LEFT_ANKLE, 2, False), ("FootLeft", _B.LEFT_FOOT, 2, False),
-                ("HipRight", _B.RIGHT_HIP, 2, False), ("KneeRight", _B.RIGHT_KNEE, 2, False),
-                ("AnkleRight", _B.RIGHT_ANKLE, 2, False), ("FootRight", _B.RIGHT_FOOT, 2, False),
-            ]
-        ),
+        "spine_base": (BodyJoint.PELVIS, CoreJoint.NAVEL),
+        "hip_center": (BodyJoint.PELVIS, CoreJoint.NAVEL),
+        "spine_mid": (BodyJoint.NAVEL, CoreJoint.NAVEL),
+        "spine": (BodyJoint.NAVEL, CoreJoint.NAVEL),
+        "spine_shoulder": (BodyJoint.NECK_BASE, CoreJoint.NECK),
+        "shoulder_center": (BodyJoint.NECK_BASE, CoreJoint.NECK),
+        "neck": (BodyJoint.NECK, CoreJoint.NECK),
+        "head": (BodyJoint.HEAD, CoreJoint.HEAD),
     }
-)  # fmt: skip
+)
+_LEFT_ARM: Mapping[str, tuple[int, int]] = MappingProxyType(
+    {
+        "shoulder": (BodyJoint.LEFT_SHOULDER, CoreJoint.LEFT_SHOULDER),
+        "elbow": (BodyJoint.LEFT_ELBOW, CoreJoint.LEFT_ELBOW),
+        "wrist": (BodyJoint.LEFT_WRIST, CoreJoint.LEFT_WRIST),
+        "hand": (BodyJoint.LEFT_HAND, CoreJoint.LEFT_WRIST),
+        "hand_tip": (BodyJoint.LEFT_TIP, CoreJoint.LEFT_WRIST),
+        "thumb": (BodyJoint.LEFT_THUMB, CoreJoint.LEFT_WRIST),
+    }
+)
+_LEFT_LEG: Mapping[str, int] = MappingProxyType(
+    {
+        "hip": BodyJoint.LEFT_HIP,
+        "knee": BodyJoint.LEFT_KNEE,
+        "ankle": BodyJoint.LEFT_ANKLE,
+        "foot": BodyJoint.LEFT_FOOT,
+    }
+)
+
+
+def _joint(name: str) -> tuple[int, int]:
+    """Landmark of a native joint, and the core joint whose errors it shares."""
+    if name in _TRUNK:
+        return _TRUNK[name]
+    limb, _, side = name.rpartition("_")
+    right = side == "right"
+    if limb in _LEFT_LEG:
+        to_right = BodyJoint.RIGHT_HIP - BodyJoint.LEFT_HIP
+        return _LEFT_LEG[limb] + to_right * right, CoreJoint.NAVEL
+    landmark, core = _LEFT_ARM[limb]
+    to_right = BodyJoint.RIGHT_SHOULDER - BodyJoint.LEFT_SHOULDER
+    return landmark + to_right * right, core + 3 * right
+
+
+@cache
+def native_table(name: str) -> NativeTable:
+    """The joints of ``kinect_v1`` or ``kinect_v2`` in the body."""
+    joint_format = get_format(name)
+    names = joint_format.names
+    pairs = [_joint(joint) for joint in names]
+    return NativeTable(
+        landmarks=[int(landmark) for landmark, _ in pairs],
+        core=[names.index(shares[0][0]) for shares in joint_format.core],
+        follows=[int(core) for _, core in pairs],
+        feet=[i for i, joint in enumerate(names) if joint.startswith(("ankle", "foot"))],
+        hips=[i for i, joint in enumerate(names) if joint.startswith(("hip", "spine_base"))],
+    )
 
 
 def place_core(body: BodyMotion, places: Places) -> Float64:
@@ -157,6 +177,15 @@ def place_core(body: BodyMotion, places: Places) -> Float64:
     return out
 
 
+def place_table(body: BodyMotion, name: str, places: Places) -> Float64:
+    """All joints of a native table without errors: shape (T, J, 3)."""
+    table = native_table(name)
+    out = body.joints[:, table.landmarks].copy()
+    out[:, table.hips] += turn(body.chest, np.array(CORE_PLACES[places].hips))[:, None]
+    out[:, table.core] = place_core(body, places)
+    return out
+
+
 def _drawn(
     root: Float64, end: Float64, share: float, true_root: Float64, stiffness: float
 ) -> Float64:
@@ -167,11 +196,3 @@ def _drawn(
     length = np.linalg.norm(bone, axis=1)
     believed = share * np.linalg.norm(end - true_root, axis=1)
     return np.asarray(root + bone * ((believed / length) ** stiffness)[:, None])
-
-
-def place_table(body: BodyMotion, places: Places) -> Float64:
-    """All joints of a sensor's own table without errors: shape (T, J, 3)."""
-    table = TABLES[places]
-    out = body.joints[:, table.body].copy()
-    out[:, table.core] = place_core(body, places)
-    return out

@@ -1,4 +1,4 @@
-"""Idle actions that take the whole body or large movements of the arms: sport, games, work."""
+"""Idle actions with large movements of the arms: sport, games, signals."""
 
 from collections.abc import Mapping
 from types import MappingProxyType
@@ -7,66 +7,6 @@ import numpy as np
 
 from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees
 from agent_server.synthetic.trajectory import ORIGIN, Vector
-
-
-def _through(
-    pen: Pen, hands: Hands, spots: list[Vector], median_s: float, *, spread: float = 0.05
-) -> float:
-    """Leads hands through places of the chest frame without stopping; returns the end."""
-    at = pen.start_s
-    duration = pen.seconds(median_s)
-    for spot in spots:
-        shared = pen.around(spot, spread)
-        for side in hands:
-            own = pen.around(shared, 0.02)
-            bow = pen.around(ORIGIN, 0.03)
-            pen.reach(side, at, duration, "chest", own, bow=bow)
-        at += 0.85 * duration
-    return at + 0.15 * duration
-
-
-def _march(pen: Pen, rate_hz: float, lift: float, stop_s: float, away: float) -> None:
-    """Feet go up and down in turn; the body travels ``away`` metres back and returns."""
-    half = 0.5 / rate_hz
-    count = max(2, int((stop_s - pen.start_s) / half))
-    for index in range(count):
-        side, at = index % 2, pen.start_s + index * half
-        travelled = away * np.sin(np.pi * (index + 1) / count)
-        pen.step(side, at, 0.5 * half, (0.0, lift, travelled))
-        pen.step(side, at + 0.5 * half, 0.5 * half, (0.0, 0.0, travelled))
-    pen.step(count % 2, stop_s, 0.3, ORIGIN)
-    pen.step(1 - count % 2, stop_s, 0.3, ORIGIN)
-    pen.sway("pelvis", pen.start_s, stop_s, (0.0, 0.015, 0.0), 2 * rate_hz)
-    pen.sway("pelvis", pen.start_s, stop_s, (0.02, 0.0, 0.0), rate_hz)
-    pen.sway("trunk", pen.start_s, stop_s, degrees(0, 0, 4), rate_hz)
-    if away:
-        third = (stop_s - pen.start_s) / 2
-        pen.turn("pelvis", pen.start_s, third, (0.0, 0.0, away))
-        pen.turn("pelvis", pen.start_s + third, third, ORIGIN)
-
-
-def _walk(pen: Pen) -> None:
-    rate = pen.uniform(0.75, 1.05)
-    stop = pen.start_s + pen.uniform(2.0, 4.5)
-    away = pen.uniform(-0.5, 0.6) if pen.chance(0.5) else 0.0
-    _march(pen, rate, pen.uniform(0.05, 0.25), stop, away)
-    size = pen.uniform(0.04, 0.2)
-    for side in BOTH:
-        phase = np.pi * side
-        pen.swing(side, pen.start_s, stop, (0, -0.02, size), rate, phase_rad=phase, ramp_s=0.5)
-
-
-def _jog(pen: Pen) -> None:
-    rate = pen.uniform(1.2, 1.6)
-    place, spread = (0.20, -0.36, -0.18), (0.03, 0.04, 0.05)
-    arrival = pen.bring(BOTH, "chest", place, spread, median_s=0.5)
-    stop = arrival + pen.uniform(1.0, 3.0)
-    _march(pen, rate, pen.uniform(0.15, 0.3), stop, 0.0)
-    size = pen.uniform(0.08, 0.16)
-    for side in BOTH:
-        phase = np.pi * side
-        pen.swing(side, arrival - 0.3, stop, (-0.03, 0.05, -size), rate, phase_rad=phase)
-    pen.lower(BOTH, stop)
 
 
 def _lift_arms(pen: Pen) -> None:
@@ -96,58 +36,12 @@ def _sideways(pen: Pen) -> None:
     pen.lower(BOTH, release)
 
 
-def _duck(pen: Pen) -> None:
-    """Ducks or squats, arms along or forward."""
-    depth = pen.uniform(0.12, 0.5) * (0.3 if pen.placement.seated else 1.0)
-    down = pen.seconds(0.7)
-    stay = pen.uniform(0.1, 1.2)
-    pen.turn("pelvis", pen.start_s, down, (0.0, -depth, 0.35 * depth))
-    end = pen.turn("pelvis", pen.start_s + down + stay, down, ORIGIN)
-    bend = degrees(60 * depth + pen.rng.normal(0, 6), 0, 0)
-    pen.turn("trunk", pen.start_s, down, bend)
-    pen.turn("trunk", pen.start_s + down + stay, down, ORIGIN)
-    if pen.chance(0.55):
-        places = ((0.18, -0.1, -0.5), (0.12, -0.3, -0.3), (0.30, -0.35, -0.2))
-        place = places[int(pen.rng.integers(3))]
-        pen.bring(BOTH, "chest", place, 0.06, median_s=0.7)
-        pen.lower(BOTH, end - down)
-
-
-def _bow(pen: Pen) -> None:
-    down = pen.seconds(0.9)
-    stay = pen.uniform(0.1, 1.0)
-    depth = pen.uniform(20, 80)
-    for part, share in (("trunk", 1.0), ("head", 0.25)):
-        pen.turn(part, pen.start_s, down, degrees(share * depth, 0, 0))
-        pen.turn(part, pen.start_s + down + stay, down, ORIGIN)
-    pen.turn_and_back("pelvis", pen.start_s, pen.start_s + 2 * down + stay, (0, 0, 0.0015 * depth))
-    if pen.chance(0.3):
-        arrival = pen.bring((pen.main,), "chest", (0.0, -0.25, -0.16), 0.03)
-        pen.lower((pen.main,), max(arrival, pen.start_s + down + stay))
-
-
-def _kick(pen: Pen) -> None:
-    side = pen.main
-    lift, swing = pen.seconds(0.45), pen.uniform(0.3, 0.75)
-    at = pen.step(side, pen.start_s, lift, (0.05, 0.15, 0.2))
-    at = pen.step(side, at, 0.6 * lift, (0.0, pen.uniform(0.2, 0.6), -swing))
-    end = pen.step(side, at, 1.5 * lift, ORIGIN)
-    lean = degrees(-pen.uniform(2, 14), pen.rng.normal(0, 5), pen.rng.normal(0, 8))
-    pen.turn_and_back("trunk", pen.start_s, end, lean)
-    pen.turn_and_back("pelvis", pen.start_s, end, (0.06 * (-1 if side else 1), 0.0, 0.05))
-    spread = pen.around((0.38, -0.38, -0.02), 0.09)
-    for hand in BOTH:
-        spot = pen.around(spread, 0.06)
-        pen.reach(hand, pen.start_s, 1.6 * lift, "chest", spot)
-    pen.lower(BOTH, end - lift)
-
-
 def _push_side(pen: Pen) -> None:
     """One hand sweeps across, out or in."""
     spots: list[Vector] = [(-0.08, -0.10, -0.36), (0.56, -0.08, -0.28)]
     if pen.chance(0.5):
         spots.reverse()
-    end = _through(pen, (pen.main,), spots, 0.6, spread=0.07)
+    end = pen.through((pen.main,), spots, 0.6, spread=0.07)
     pen.lower((pen.main,), end + pen.uniform(0, 0.4))
     if pen.chance(0.5):
         pen.turn_and_back("trunk", pen.start_s, end + 0.5, degrees(0, 0, pen.rng.normal(0, 12)))
@@ -156,7 +50,7 @@ def _push_side(pen: Pen) -> None:
 def _push_forward(pen: Pen) -> None:
     hands = BOTH if pen.chance(0.7) else (pen.main,)
     spots: list[Vector] = [(0.15, -0.16, -0.22), (0.17, -0.05, -0.56)]
-    end = _through(pen, hands, spots, 0.5)
+    end = pen.through(hands, spots, 0.5)
     pen.lower(hands, end + pen.uniform(0, 0.6))
 
 
@@ -165,7 +59,7 @@ def _throw(pen: Pen) -> None:
     spots: list[Vector] = [(0.32, 0.14, 0.14), (0.22, 0.22, -0.28), (0.0, -0.25, -0.42)]
     if pen.chance(0.3):
         spots = [(0.30, -0.48, 0.18), (0.18, -0.25, -0.42), (0.05, 0.08, -0.45)]
-    end = _through(pen, (pen.main,), spots, 0.5)
+    end = pen.through((pen.main,), spots, 0.5)
     pen.lower((pen.main,), end)
     yaw = 16.0 * (1 if pen.main == 0 else -1)
     pen.turn("trunk", pen.start_s, 0.6, degrees(-3, 0, yaw))
@@ -177,7 +71,7 @@ def _shoot(pen: Pen) -> None:
     """Both hands forward as if they held a pistol, or a ball to the basket."""
     if pen.chance(0.3):
         spots: list[Vector] = [(0.06, -0.05, -0.25), (0.10, 0.35, -0.35)]
-        end = _through(pen, BOTH, spots, 0.55)
+        end = pen.through(BOTH, spots, 0.55)
     else:
         shared = pen.around((0.035, -0.08, -0.48), (0.015, 0.08, 0.05))
         end = pen.bring(BOTH, "chest", shared, 0.01)
@@ -247,7 +141,7 @@ def _circles(pen: Pen) -> None:
 def _strokes(pen: Pen) -> None:
     """Draws straight lines in the air: a cross, a triangle, a letter."""
     spots = [pen.around((0.12, -0.08, -0.44), (0.15, 0.14, 0.04)) for _ in range(4)]
-    end = _through(pen, (pen.main,), spots[: int(pen.rng.integers(2, 5))], 0.45, spread=0.02)
+    end = pen.through((pen.main,), spots[: int(pen.rng.integers(2, 5))], 0.45, spread=0.02)
     pen.lower((pen.main,), end)
 
 
@@ -325,7 +219,7 @@ def _knock(pen: Pen) -> None:
 def _curl(pen: Pen) -> None:
     hands = BOTH if pen.chance(0.8) else (pen.main,)
     spots: list[Vector] = [(0.20, -0.10, -0.20), (0.22, -0.48, -0.12)]
-    end = _through(pen, hands, spots * int(pen.rng.integers(1, 3)), 0.7, spread=0.03)
+    end = pen.through(hands, spots * int(pen.rng.integers(1, 3)), 0.7, spread=0.03)
     pen.lower(hands, end)
 
 
@@ -336,33 +230,6 @@ def _catch(pen: Pen) -> None:
     for side in BOTH:
         pen.reach(side, arrival, 0.35, "chest", hugged)
     pen.lower(BOTH, arrival + 0.35 + pen.uniform(0, 1.0))
-
-
-def _lunge(pen: Pen) -> None:
-    side = pen.main
-    go, stay = pen.seconds(0.7), pen.uniform(0.2, 1.0)
-    deep = pen.uniform(0.1, 0.3)
-    pen.step(side, pen.start_s, go, (0.0, 0.0, -0.6))
-    pen.turn("pelvis", pen.start_s, go, (0.0, -deep, -0.3))
-    back = pen.start_s + go + stay
-    pen.step(side, back, go, ORIGIN)
-    pen.turn("pelvis", back, go, ORIGIN)
-
-
-def _jump(pen: Pen) -> None:
-    down, up = (0.0, -0.22, 0.05), (0.0, pen.uniform(0.1, 0.3), 0.0)
-    at = pen.turn("pelvis", pen.start_s, 0.45, down)
-    top = at + 0.32
-    pen.turn("pelvis", at, 0.32, up)
-    pen.turn("pelvis", top, 0.3, (0.0, -0.12, 0.03))
-    end = pen.turn("pelvis", top + 0.3, 0.4, ORIGIN)
-    for side in BOTH:
-        pen.step(side, at + 0.1, 0.22, up)
-        pen.step(side, top, 0.25, ORIGIN)
-    pen.turn_and_back("trunk", pen.start_s, end, degrees(pen.uniform(5, 25), 0, 0))
-    if pen.chance(0.6):
-        spots: list[Vector] = [(0.25, -0.45, 0.20), (0.28, 0.1, -0.40)]
-        pen.lower(BOTH, _through(pen, BOTH, spots, 0.45))
 
 
 def _signal(pen: Pen) -> None:
@@ -397,15 +264,10 @@ def _anything(pen: Pen) -> None:
     pen.lower(hands, stop)
 
 
-VIGOROUS: Mapping[str, tuple[float, Writer]] = MappingProxyType(
+ARMWORK: Mapping[str, tuple[float, Writer]] = MappingProxyType(
     {
-        "walk": (2.0, _walk),
-        "jog": (0.7, _jog),
         "lift_arms": (1.5, _lift_arms),
         "sideways": (1.0, _sideways),
-        "duck": (1.5, _duck),
-        "bow": (1.6, _bow),
-        "kick": (1.2, _kick),
         "push_side": (1.5, _push_side),
         "push_forward": (1.0, _push_forward),
         "throw": (1.2, _throw),
@@ -421,8 +283,6 @@ VIGOROUS: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "knock": (0.8, _knock),
         "curl": (0.7, _curl),
         "catch": (0.8, _catch),
-        "lunge": (0.5, _lunge),
-        "jump": (0.6, _jump),
         "signal": (1.5, _signal),
         "anything": (4.0, _anything),
     }
