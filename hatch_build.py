@@ -60,8 +60,10 @@ def build_page(web: Path) -> Path:
     if stamp.is_file() and stamp.read_text("ascii").strip() == digest:
         return dist
     if not _is_installed(web):
-        # What only checks and tests need stays away.
-        _npm(web, "ci", "--omit=dev", "--ignore-scripts")
+        # What only checks need stays away, unless somebody works on the page here.
+        is_workplace = (web / "node_modules" / "typescript").is_dir()
+        scope = () if is_workplace else ("--omit=dev",)
+        _npm(web, "ci", *scope, "--ignore-scripts")
     _npm(web, "run", "build")
     stamp.write_text(f"{digest}\n", "ascii")
     return dist
