@@ -102,7 +102,7 @@ def _club(pen: Pen) -> None:
     """Swings a bat, a club or a racket."""
     side = 1 if pen.main else -1
     hands = BOTH if pen.chance(0.6) else (pen.main,)
-    back = pen.around((0.30, pen.uniform(-0.2, 0.25), 0.0), 0.05)
+    back = pen.around((0.36, pen.uniform(-0.25, 0.25), -0.12), 0.05)
     front = pen.around((-0.10, pen.uniform(-0.3, 0.2), -0.42), 0.06)
     windup, stroke = pen.seconds(0.7), pen.seconds(0.45)
     for hand in hands:
@@ -239,7 +239,8 @@ def _signal(pen: Pen) -> None:
         hands = BOTH if pen.chance(0.4) else (int(pen.rng.integers(2)),)
         move = pen.seconds(0.6)
         for side in hands:
-            spot = pen.around((0.42, 0.06, -0.26), (0.19, 0.22, 0.16))
+            x, y, z = pen.around((0.42, 0.06, -0.30), (0.19, 0.22, 0.16))
+            spot = (x, y, min(z, -0.1))
             pen.reach(side, at, move, "chest", spot)
         at += move + pen.uniform(0.0, 0.8)
     pen.lower(BOTH, at)

@@ -8,7 +8,7 @@ from agent_server.domain.arrays import Float64
 from agent_server.domain.gesture import IDLE
 from agent_server.synthetic.body import BodyMotion
 from agent_server.synthetic.gestures import write_gesture
-from agent_server.synthetic.idle import write_idle
+from agent_server.synthetic.idle import ON_FOOT, write_idle
 from agent_server.synthetic.performance import Arm, Performance, Reach, Track
 from agent_server.synthetic.person import Person, Placement
 from agent_server.synthetic.rest import sample_rest
@@ -63,15 +63,17 @@ def sample_clip(
         gesture: One of ``domain.gesture.GESTURES``.
         person: Who moves.
         variant: Which way of doing it; None draws one.
-        placement: Where; None draws one.
+        placement: Where; None draws one, standing if the variant needs feet.
 
     Raises:
         InvalidInput: If there is no such gesture or variant.
     """
-    place = Placement.sample(rng) if placement is None else placement
-    rest = sample_rest(rng, person, place)
+    if placement is None:
+        on_foot = gesture == IDLE and variant in ON_FOOT
+        placement = Placement.sample(rng, seated=False if on_foot else None)
+    rest = sample_rest(rng, person, placement)
     start = float(rng.uniform(1.05, 3.0))
-    pen = Pen(rng, person, place, rest, start)
+    pen = Pen(rng, person, placement, rest, start)
     script = write_idle(pen, variant) if gesture == IDLE else write_gesture(pen, gesture, variant)
     duration = script.offset_s + float(rng.uniform(0.6, 2.0))
     return Clip(
@@ -81,7 +83,7 @@ def sample_clip(
         offset_s=script.offset_s,
         duration_s=duration,
         subject=person.subject,
-        performance=perform(rng, person, place, rest, (script,)),
+        performance=perform(rng, person, placement, rest, (script,)),
     )
 
 

@@ -104,7 +104,7 @@ def _glasses(pen: Pen) -> None:
 
 
 def _neck_rub(pen: Pen) -> None:
-    place, spread = (0.09, -0.09, 0.07), (0.02, 0.03, 0.02)
+    place, spread = (0.06, -0.05, 0.09), (0.02, 0.025, 0.02)
     _touch(pen, (pen.main,), place, spread, (0.8, 2.5), (95.0, 14.0), rub=0.01)
 
 
@@ -114,7 +114,7 @@ def _chin(pen: Pen) -> None:
 
 
 def _phone(pen: Pen) -> None:
-    place, spread = (0.145, -0.14, -0.05), (0.02, 0.03, 0.03)
+    place, spread = (0.135, -0.09, -0.10), (0.02, 0.025, 0.025)
     _touch(pen, (pen.main,), place, spread, (2.0, 5.0), (50.0, 18.0))
 
 

@@ -122,8 +122,8 @@ def _jump(pen: Pen) -> None:
         pen.step(side, top, 0.25, ORIGIN)
     pen.turn_and_back("trunk", pen.start_s, end, degrees(pen.uniform(5, 25), 0, 0))
     if pen.chance(0.6):
-        spots: list[Vector] = [(0.25, -0.45, 0.20), (0.28, 0.1, -0.40)]
-        pen.lower(BOTH, pen.through(BOTH, spots, 0.45))
+        spots: list[Vector] = [(0.26, -0.50, 0.14), (0.27, -0.50, -0.16), (0.28, 0.1, -0.40)]
+        pen.lower(BOTH, pen.through(BOTH, spots, 0.35))
 
 
 def _sit_or_stand(pen: Pen) -> None:

@@ -48,7 +48,7 @@ def _fan_one(pen: Pen) -> None:
 
 
 def _fan_both(pen: Pen) -> None:
-    _fan(pen, BOTH, (0.18, -0.21, -0.20), (0.04, 0.06, 0.05), (0.03, 0.09))
+    _fan(pen, BOTH, (0.18, -0.21, -0.21), (0.04, 0.05, 0.04), (0.03, 0.09))
 
 
 def _neck(pen: Pen) -> None:
