@@ -42,4 +42,4 @@ class Story:
             line += f"-> {decision.command.reaction} ({steps})"
         else:
             line += decision.reason.partition(": ")[2] or decision.reason
-        self._console.print(line, style=_STYLE.get(decision.outcome))
+        self._console.print(line, style=_STYLE.get(decision.outcome), soft_wrap=True)
