@@ -104,7 +104,7 @@ def _club(pen: Pen) -> None:
     hands = BOTH if pen.chance(0.6) else (pen.main,)
     back = pen.around((0.36, pen.uniform(-0.25, 0.25), -0.12), 0.05)
     front = pen.around((-0.10, pen.uniform(-0.3, 0.2), -0.42), 0.06)
-    windup, stroke = pen.seconds(0.7), pen.seconds(0.45)
+    windup, stroke = pen.seconds(0.7), max(0.42, pen.seconds(0.5))
     for hand in hands:
         sign = 1.0 if hand == pen.main else -1.0
         for begin, duration, spot in (

@@ -15,6 +15,8 @@ from agent_server.synthetic.trajectory import ORIGIN, Move, Oscillation, Vector
 LEFT, RIGHT = 0, 1
 Hands = tuple[int, ...]
 BOTH: Hands = (LEFT, RIGHT)
+SECONDS_PER_METRE = 0.36
+"""Nobody moves a hand faster: a minimum-jerk peak of 1.875 / 0.36 = 5.2 m/s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +131,7 @@ class Pen:
         Args:
             side: ``LEFT`` or ``RIGHT``.
             start_s: When it starts.
-            duration_s: How long it takes.
+            duration_s: How long it takes; longer if the way is too long for that.
             frame: What the place is tied to, see ``performance.Reach``.
             point: Metres outwards, up and back.
             swivel: Degrees by which the elbow is turned outwards; None lets it hang naturally.
@@ -137,7 +139,10 @@ class Pen:
             bow: How far the path swings out, in the chest frame.
         """
         before = self._reaches[side][-1] if self._reaches[side] else self.rest[side]
-        bow = detour(from_neck(before.frame, before.point), from_neck(frame, point), bow)
+        here, there = from_neck(before.frame, before.point), from_neck(frame, point)
+        bow = detour(here, there, bow)
+        way = float(np.linalg.norm(there - here) + np.linalg.norm(bow))
+        duration_s = max(duration_s, way * SECONDS_PER_METRE)
         turned = natural_swivel(frame, point) if swivel is None else swivel
         turned += float(np.clip(self.rng.normal(0, 4), -8, 8))
         skew = float(np.clip(self.rng.normal(1.0, 0.12), 0.8, 1.3))
@@ -207,15 +212,17 @@ class Pen:
         self, hands: Hands, spots: Sequence[Vector], median_s: float, *, spread: float = 0.05
     ) -> float:
         """Leads hands through places of the chest frame without stopping; returns the end."""
-        at = self.start_s
+        at = end = self.start_s
         duration = self.seconds(median_s)
         for spot in spots:
             shared = self.around(spot, spread)
+            end = at
             for side in hands:
                 own = self.around(shared, 0.02)
-                self.reach(side, at, duration, "chest", own, bow=self.around(ORIGIN, 0.03))
-            at += 0.85 * duration
-        return at + 0.15 * duration
+                bow = self.around(ORIGIN, 0.03)
+                end = max(end, self.reach(side, at, duration, "chest", own, bow=bow))
+            at += 0.85 * (end - at)
+        return end
 
     def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.85) -> float:
         """Brings hands back to rest; returns when the last one is there."""
