@@ -1,9 +1,10 @@
-"""Build the browser page, and put it into what hatchling builds.
+"""Build the browser page, and put what belongs to the product into what hatchling builds.
 
-A wheel carries the page as ``agent_server/assets/page``, an sdist as ``agent_server/web/dist``;
-an editable install finds the latter in the checkout. Node comes from a wheel of the package
-index, so that no machine needs it beforehand, and an sdist, which carries the built page, needs
-none at all.
+A wheel carries the page, the model bundles and the demo's recording under
+``agent_server/assets``; an sdist carries the built page as ``agent_server/web/dist``, and an
+editable install finds everything where it lies in the checkout. Node comes from a wheel of the
+package index, so that no machine needs it beforehand, and an sdist, which carries the built
+page, needs none at all.
 
 ``python hatch_build.py`` builds the page in place.
 """
@@ -21,7 +22,12 @@ except ModuleNotFoundError:  # building the page in place takes no build backend
     BuildHookInterface = object
 
 ROOT = Path(__file__).resolve().parent
-PAGE = "agent_server/assets/page"
+ASSETS = "agent_server/assets"
+CARRIED = {
+    "models/artifacts": "bundles",
+    "recorded_streams/demo.mcap": "streams/demo.mcap",
+}
+"""What a wheel carries beside the page: path in the checkout -> path among the assets."""
 STAMP = "sources.sha256"
 """In the built page: what it was built from, so that a page of older sources is noticed."""
 
@@ -39,7 +45,9 @@ class PageBuildHook(BuildHookInterface):  # type: ignore[misc, valid-type]
         """Build the page if need be, before hatchling collects files."""
         dist = build_page(Path(self.root) / "agent_server" / "web")
         if self.target_name == "wheel" and version != "editable":
-            build_data["force_include"][str(dist)] = PAGE
+            build_data["force_include"][str(dist)] = f"{ASSETS}/page"
+            for source, target in CARRIED.items():
+                build_data["force_include"][str(Path(self.root) / source)] = f"{ASSETS}/{target}"
 
 
 def build_page(web: Path) -> Path:

@@ -41,7 +41,7 @@ def convert(
     if as_json:
         print(msgspec.json.encode(report).decode())
         return
-    console = Console(highlight=False)
+    console = Console(highlight=False, soft_wrap=True)
     console.print(
         f"{output}: {report.frames} frames of {report.bodies} bodies, {report.duration_s:.1f} s, "
         f"format {report.format}, subject {report.subject}"

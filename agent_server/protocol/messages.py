@@ -139,6 +139,13 @@ class GateLevels(msgspec.Struct, frozen=True):
     leave_arousal: float
 
 
+class DecideLevels(msgspec.Struct, frozen=True):
+    """Probabilities at which a gesture starts and ends, so that a client can draw them."""
+
+    enter: float
+    leave: float
+
+
 class Limits(msgspec.Struct, frozen=True):
     """What the server takes from a client."""
 
@@ -167,6 +174,7 @@ class Welcome(Message, frozen=True, tag="welcome"):
     heartbeat_s: float
     labels: list[str]
     gate: GateLevels
+    decide: DecideLevels
     limits: Limits
     models: list[ModelInfo]
     scene: SceneState

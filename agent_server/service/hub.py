@@ -130,6 +130,7 @@ class Hub:
                 gate.leave_valence,
                 gate.leave_arousal,
             ),
+            decide=m.DecideLevels(self.settings.decide.enter, self.settings.decide.leave),
             limits=m.Limits(server.max_message_bytes, server.max_errors),
             models=[
                 m.ModelInfo(predictor.name, "predict", predictor.sha256),

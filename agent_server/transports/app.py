@@ -3,9 +3,10 @@
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
 from fastapi import FastAPI
-from fastapi.responses import HTMLResponse, JSONResponse
+from fastapi.responses import HTMLResponse, JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
 
 from agent_server import __version__
@@ -14,6 +15,18 @@ from agent_server.transports.websocket import websocket_router
 
 _NO_PAGE = """<!doctype html><meta charset="utf-8"><title>agent-server</title>
 <p>The server is running. Its page has not been built: run <code>make page</code>.</p>"""
+
+
+class _Page(StaticFiles):
+    """The browser page: checked for changes at each visit, and confined to this server."""
+
+    def file_response(self, *args: Any, **kwargs: Any) -> Response:
+        """A file, with what a browser may do with it."""
+        response = super().file_response(*args, **kwargs)
+        response.headers["Cache-Control"] = "no-cache"
+        response.headers["Content-Security-Policy"] = "default-src 'self'"
+        response.headers["X-Content-Type-Options"] = "nosniff"
+        return response
 
 
 def create_app(hub: Hub, page: Path) -> FastAPI:
@@ -61,7 +74,7 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
         }
 
     if (page / "index.html").exists():
-        app.mount("/", StaticFiles(directory=page, html=True), name="page")
+        app.mount("/", _Page(directory=page, html=True), name="page")
     else:
 
         @app.get("/")

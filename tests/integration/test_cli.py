@@ -155,10 +155,13 @@ def test_a_wrong_bundle_stops_the_start_with_a_sentence(monkeypatch, capsys, tmp
 
 
 def test_a_wrong_rule_file_stops_the_start_with_its_line(monkeypatch, capsys, tmp_path):
-    (tmp_path / "room.toml").write_text("[settings]\nattention_s = -1\n")
+    rules = (Path(assets.__file__).parent / "scene" / "room.toml").read_text()
+    line = rules[: rules.index('gesture = "loud"')].count("\n") + 1
+    (tmp_path / "room.toml").write_text(rules.replace('gesture = "loud"', 'gesture = "laud"'))
     (tmp_path / "c.toml").write_text(f"rules = '{tmp_path / 'room.toml'}'\n")
     said = fails(monkeypatch, capsys, "serve", "--port", "0", "-c", tmp_path / "c.toml")
-    assert "room.toml:2" in said
+    assert f"room.toml:{line}" in said
+    assert "did you mean 'loud'" in said
 
 
 def test_closing_codes_are_those_of_the_document():

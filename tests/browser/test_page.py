@@ -1,0 +1,123 @@
+"""The page in a real browser, on a real server, with the shipped models and a recorded stream."""
+
+import asyncio
+import shutil
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+
+from agent_server import assets
+from agent_server.recording.reader import open_recording
+from agent_server.transports.client import send_paced
+from agent_server.transports.server import load_models
+from tests.support.live import live
+
+playwright = pytest.importorskip("playwright.async_api", reason="playwright is not installed")
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
+pytestmark = [
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium on this machine"),
+    pytest.mark.skipif(
+        not (assets.page() / "index.html").exists(), reason="the page is not built: make page"
+    ),
+]
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+]
+COLD = Path(__file__).parents[2] / "recorded_streams" / "cold.mcap"
+SPEED = 4.0
+
+
+@asynccontextmanager
+async def browsing(url):
+    """A page on ``url``, and everything that it asked for and complained about."""
+    async with playwright.async_playwright() as tool:
+        browser = await tool.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        page = await browser.new_page(viewport={"width": 1280, "height": 720})
+        page.requested, page.complaints = [], []
+        page.on("request", lambda request: page.requested.append(request.url))
+        page.on("pageerror", lambda error: page.complaints.append(str(error)))
+        await page.goto(url)
+        try:
+            yield page
+        finally:
+            await browser.close()
+
+
+async def until(page, condition, within_s=20.0):
+    """Step the page until its state fits ``condition``, and give that state."""
+    async with asyncio.timeout(within_s):
+        while True:
+            await page.evaluate("window.agentPage.step(100)")
+            state = await page.evaluate("window.agentPage.state()")
+            if condition(state):
+                return state
+            await asyncio.sleep(0.05)
+
+
+async def test_the_page_shows_what_the_agent_makes_of_a_person(tmp_path):
+    async with (
+        live(load_models()) as server,
+        browsing(f"{server.url}/?session=cold&step") as page,
+    ):
+        state = await until(page, lambda s: s["problem"] == "no_sensor")
+        assert state["connection"]["phase"] == "live"
+        assert state["objects"]["window"] == "open"
+        async with server.join("sensor", "cold") as sensor:
+            events = open_recording(COLD).events()
+            sending = asyncio.create_task(send_paced(sensor, events, SPEED))
+            state = await until(page, lambda s: s["command"])
+            assert state["mode"] == "reacting"
+            assert state["gesture"] == "cold"
+            assert state["gateOpen"]
+            assert state["affect"]["valence"] < -3
+            assert state["forecastFrames"] == 50
+            assert state["poseNs"] > 4e9
+            assert state["lastDecision"]["id"].startswith("cold/")
+            picture = await page.screenshot(path=tmp_path / "page.png")
+            assert len(picture) > 20_000
+            state = await until(page, lambda s: s["objects"]["window"] == "closed")
+            sending.cancel()
+        rows = [(row["outcome"], row["gesture"]) for row in state["log"]]
+        assert ("command", "cold") in rows
+        assert state["errors"] == []
+        assert page.complaints == []
+        assert all(address.startswith(server.url) for address in page.requested)
+        assert "Close window" in await page.inner_text("body")
+
+
+async def test_a_pleased_face_is_explained_on_the_page():
+    pleasant = COLD.with_name("pleasant_face.mcap")
+    async with (
+        live(load_models()) as server,
+        browsing(f"{server.url}/?session=p&step") as page,
+        server.join("sensor", "p") as sensor,
+    ):
+        await until(page, lambda s: s["connection"]["phase"] == "live")
+        sending = asyncio.create_task(send_paced(sensor, open_recording(pleasant).events(), SPEED))
+        state = await until(page, lambda s: s["log"] and s["log"][0]["outcome"] == "gated")
+        assert state["command"] is None
+        assert not state["gateOpen"]
+        assert "pleased" in await page.inner_text("body")
+        sending.cancel()
+
+
+async def test_a_connection_that_is_lost_comes_back_by_itself():
+    async with (
+        live(load_models()) as server,
+        browsing(f"{server.url}/?session=lost&step") as page,
+    ):
+        await until(page, lambda s: s["connection"]["phase"] == "live")
+        (monitor,) = server.hub.sessions["lost"].audience.clients
+        assert monitor.hello.client == "agent-server-page"
+        monitor.outbox.close(1001, "the server is stopping")
+        await until(page, lambda s: s["connection"]["phase"] != "live")
+        state = await until(page, lambda s: s["connection"]["phase"] == "live")
+        assert state["connection"]["fault"] is None
