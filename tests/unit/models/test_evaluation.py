@@ -1,0 +1,107 @@
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="needs the train extra")
+
+from agent_server.domain.gesture import GESTURES, IDLE  # noqa: E402
+from agent_server.domain.skeleton import CoreJoint  # noqa: E402
+from models.data.windows import Recording  # noqa: E402
+from models.evaluation.gestures import (  # noqa: E402
+    calibration_error,
+    decisions,
+    evaluate_decisions,
+    false_reactions,
+    hold_last,
+    scores,
+    sliding_seen,
+)
+from models.evaluation.prediction import bone_error, horizon_errors, mean_step  # noqa: E402
+
+
+def rows(*names: str, level: float = 0.9) -> np.ndarray:
+    out = np.full((len(names), len(GESTURES)), (1 - level) / 6, dtype=np.float32)
+    out[np.arange(len(names)), [GESTURES.index(n) for n in names]] = level
+    return out
+
+
+def test_horizons_are_the_frames_at_40_ms() -> None:
+    true = np.zeros((2, 50, 9, 3), dtype=np.float32)
+    predicted = true.copy()
+    predicted[..., 0] = np.arange(1, 51)[None, :, None] / 1000  # mm equals the frame's number
+    assert horizon_errors(predicted, true) == {
+        "80": 2, "160": 4, "320": 8, "400": 10, "560": 14, "1000": 25, "1500": 37, "2000": 50,
+    }  # fmt: skip
+    np.testing.assert_allclose(mean_step(true[:, :1], predicted), 1.0, atol=1e-4)
+
+
+def test_bones_are_compared_with_the_last_seen_ones() -> None:
+    pose = np.random.default_rng(0).standard_normal((1, 1, 9, 3)).astype(np.float32)
+    seen, future = np.repeat(pose, 25, axis=1), np.repeat(pose, 50, axis=1)
+    assert bone_error(future + 0.4, seen) == pytest.approx(0.0, abs=1e-3)
+    assert bone_error(2 * future, seen) > 100
+
+
+def test_a_decision_takes_three_sure_windows_in_a_row() -> None:
+    assert decisions(rows("hot", "hot")) == []
+    assert decisions(rows("hot", "hot", "hot", "hot")) == [(2, "hot")]
+    assert decisions(rows("hot", "hot", "cold", "hot", "hot")) == []
+    assert decisions(rows(*["hot"] * 5, level=0.55)) == []
+    assert decisions(rows(*[IDLE] * 5)) == []
+
+
+def test_after_a_decision_there_is_a_rest() -> None:
+    assert [w for w, _ in decisions(rows(*["hot"] * 20))] == [2, 12]
+
+
+def test_scores_count_only_classes_that_occur() -> None:
+    labels = np.array([GESTURES.index(n) for n in ("hot", "hot", "idle", "idle")])
+    result = scores(rows("hot", "cold", "idle", "idle"), labels)
+    assert result["accuracy"] == 0.75
+    assert result["balanced_accuracy"] == 0.75
+    assert result["confusion"][GESTURES.index("hot")][GESTURES.index("cold")] == 1
+
+
+def test_calibration_error_of_honest_and_boastful_probabilities() -> None:
+    labels = np.array([GESTURES.index(n) for n in ["hot"] * 9 + ["cold"]])
+    assert calibration_error(rows(*["hot"] * 10), labels) == pytest.approx(0.0, abs=1e-6)
+    assert calibration_error(rows(*["smell"] * 10), labels) == pytest.approx(0.9, abs=1e-6)
+
+
+def test_windows_slide_by_five_frames_and_are_normalised() -> None:
+    stream = np.random.default_rng(0).standard_normal((41, 9, 3)).astype(np.float32)
+    seen, last = sliding_seen(stream)
+    assert last.tolist() == [24, 29, 34, 39]
+    assert (seen[:, -1, CoreJoint.NAVEL] == 0).all()
+
+
+def raised(height: float, frames: int = 120, onset: int = 40) -> np.ndarray:
+    motion = np.zeros((frames, 9, 3), dtype=np.float32)
+    motion[onset:, CoreJoint.RIGHT_WRIST, 1] = height
+    return motion
+
+
+def by_height(motion: np.ndarray) -> np.ndarray:
+    """A classifier that holds a high right hand for a greeting."""
+    high = motion[:, 24, CoreJoint.RIGHT_WRIST, 1] > 0.3
+    return np.concatenate([rows("hello" if h else IDLE) for h in high])
+
+
+def test_delays_run_from_onset_to_the_end_of_the_deciding_window() -> None:
+    motion = raised(0.5)
+    takes = [
+        Recording(motion, motion, "hello", 40, 110, "v00"),
+        Recording(motion, motion, "hot", 40, 110, "v00"),
+        Recording(raised(0.1), raised(0.1), "hello", 40, 110, "v00"),
+        Recording(motion, motion, IDLE, 40, 110, "v00"),
+    ]
+    result = evaluate_decisions(by_height, hold_last, takes)
+    assert (result["right"], result["wrong"], result["missed"]) == (0.3333, 0.3333, 0.3333)
+    # Windows end at frames 24, 29, ...: 44, 49 and 54 are the first three that see the hand.
+    assert result["delay_s_p50"] == pytest.approx((54 - 40) / 25)
+
+
+def test_false_reactions_are_counted_over_time() -> None:
+    result = false_reactions(by_height, hold_last, [raised(0.5, 1500, 1450), raised(0.0, 1500)])
+    assert result["false_reactions"] == 1
+    assert result["minutes"] == 2.0
+    assert result["gestures"] == {"hello": 1}

@@ -1,0 +1,140 @@
+from pathlib import Path
+
+import pytest
+
+torch = pytest.importorskip("torch", reason="needs the train extra")
+
+from agent_server.domain.gesture import GESTURES  # noqa: E402
+from agent_server.domain.skeleton import CORE_BONES, CoreJoint  # noqa: E402
+from agent_server.errors import ConfigError, InvalidInput  # noqa: E402
+from models.data.windows import WindowSet  # noqa: E402
+from models.interformer.config import NetworkConfig, TrainConfig  # noqa: E402
+from models.interformer.network import (  # noqa: E402
+    Calibrated,
+    Classifier,
+    SpatialAttention,
+    adjacency,
+)
+from models.interformer.train import (  # noqa: E402
+    Pools,
+    Trainer,
+    complete,
+    hold_last,
+    load_classifier,
+    train,
+)
+from models.training.run import Run  # noqa: E402
+
+SMALL = NetworkConfig(layers=1, features=4, dropout=0.0)
+CPU = torch.device("cpu")
+
+
+def labelled(repeats: int = 8) -> WindowSet:
+    """Windows in which the right hand is as high as the class says."""
+    count = len(GESTURES) * repeats
+    labels = torch.arange(len(GESTURES)).repeat(repeats)
+    frames = torch.zeros(count, 75, 9, 3)
+    frames[:, :, CoreJoint.RIGHT_SHOULDER, 0] = 0.2
+    frames[:, :, CoreJoint.LEFT_SHOULDER, 0] = -0.2
+    frames[:, :, CoreJoint.RIGHT_WRIST, 1] = labels[:, None] * 0.15 - 0.4
+    frames += torch.randn(frames.shape, generator=torch.Generator().manual_seed(0)) * 0.01
+    flat = frames.reshape(-1, 9, 3)
+    starts = torch.arange(count) * 75
+    return WindowSet(flat, flat, starts, labels, torch.full((count,), 20), torch.arange(count))
+
+
+def test_the_mask_is_self_and_neighbours() -> None:
+    mask = adjacency()
+    assert mask.diagonal().all()
+    assert torch.equal(mask, mask.T)
+    assert int(mask.sum()) == 9 + 2 * len(CORE_BONES)
+    assert mask[CoreJoint.LEFT_ELBOW, CoreJoint.LEFT_WRIST]
+    assert not mask[CoreJoint.LEFT_WRIST, CoreJoint.RIGHT_WRIST]
+
+
+def test_a_joint_sees_its_neighbours_only_and_its_coordinate_only() -> None:
+    torch.manual_seed(0)
+    attention = SpatialAttention(SMALL)
+    attention.out = torch.nn.Identity()  # type: ignore[assignment]
+    x = torch.randn(1, 2, 3, 9, 4)
+    changed = x.clone()
+    changed[:, :, 1, CoreJoint.LEFT_WRIST] += 1.0  # its y
+    before, after = (attention(v.flatten(2)).reshape(1, 2, 3, 9, 4) for v in (x, changed))
+    moved = (before != after).any(-1).any(1)[0]  # (3, 9)
+    expected = torch.zeros(3, 9, dtype=torch.bool)
+    expected[1, [CoreJoint.LEFT_WRIST, CoreJoint.LEFT_ELBOW]] = True
+    assert torch.equal(moved, expected)
+
+
+def test_shapes_and_probabilities() -> None:
+    network = Calibrated(Classifier(SMALL), 1.7).eval()
+    rows = network(torch.randn(3, 75, 9, 3) * 0.3)
+    assert rows.shape == (3, 7)
+    torch.testing.assert_close(rows.sum(-1), torch.ones(3))
+    sharp = Calibrated(network.classifier, 0.5).eval()(torch.randn(3, 75, 9, 3) * 0.3)
+    assert torch.isfinite(sharp).all()
+
+
+def test_classes_are_drawn_in_the_shares_asked_for() -> None:
+    pools = Pools.of(labelled())
+    index = pools.draw(2000, 0.5, torch.Generator().manual_seed(0))
+    shares = torch.bincount(pools.windows.labels[index]) / 2000
+    assert float(shares[-1]) == pytest.approx(0.5, abs=0.04)
+    assert float(shares[:-1].max()) < 0.12
+
+
+def test_a_missing_class_is_named() -> None:
+    windows = labelled()
+    with pytest.raises(InvalidInput, match="hello"):
+        Pools.of(windows.take((windows.labels != GESTURES.index("hello")).nonzero()[:, 0]))
+
+
+def test_windows_are_completed_in_the_shares_asked_for() -> None:
+    observed = torch.randn(4000, 75, 9, 3)
+    never = torch.zeros(4000, dtype=torch.bool)
+    generator = torch.Generator().manual_seed(0)
+    config = TrainConfig(true_future=0.2, last_frame=0.1)
+
+    def zero(seen: torch.Tensor) -> torch.Tensor:
+        return torch.zeros(len(seen), 50, 9, 3)
+
+    motion = complete(zero, observed, config, never, generator)  # type: ignore[arg-type]
+    future = motion[:, 25:]
+    true = (future == observed[:, 25:]).all(-1).all(-1).all(-1)
+    held = (future == hold_last(observed[:, :25])).all(-1).all(-1).all(-1)
+    assert float(true.float().mean()) == pytest.approx(0.2, abs=0.03)
+    assert float(held.float().mean()) == pytest.approx(0.1, abs=0.03)
+    assert torch.equal(motion[:, :25], observed[:, :25])
+    motion = complete(zero, observed, config, ~never, generator)  # type: ignore[arg-type]
+    assert not (motion[:, 25:] == observed[:, 25:]).all(-1).all(-1).all(-1).any()
+
+
+def test_a_few_windows_are_learnt_by_heart() -> None:
+    windows = labelled()
+    torch.manual_seed(0)
+    trainer = Trainer(TrainConfig(network=SMALL, steps=250, learning_rate=3e-3), CPU)
+    motion = windows.frames(torch.arange(len(windows)))[0]
+    for _ in range(60):
+        terms = trainer.step(motion, windows.labels)
+    assert terms["accuracy"] > 0.9
+
+
+def test_a_run_leaves_a_classifier_that_can_be_loaded(tmp_path: Path) -> None:
+    windows = labelled()
+    config = TrainConfig(network=SMALL, steps=4, batch=16, validate_every=2)
+    predictor = torch.nn.Module()
+    predictor.forward = hold_last  # type: ignore[assignment]
+    for name in ("a", "b"):
+        run = Run(tmp_path / name, config, 3, "train", resume=False)
+        train(config, run, windows, windows, predictor)
+    a, b = (load_classifier(tmp_path / name).state_dict() for name in ("a", "b"))
+    assert all(torch.equal(a[key], b[key]) for key in a)
+
+
+def test_contradictions_are_refused() -> None:
+    with pytest.raises(ConfigError, match="patch 4"):
+        NetworkConfig(patch=4)
+    with pytest.raises(ConfigError, match="heads 5"):
+        NetworkConfig(heads=5)
+    with pytest.raises(ConfigError, match="add up"):
+        TrainConfig(true_future=0.8, last_frame=0.5)
