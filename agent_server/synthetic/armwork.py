@@ -56,7 +56,11 @@ def _push_forward(pen: Pen) -> None:
 
 def _throw(pen: Pen) -> None:
     """Over or under the shoulder."""
-    spots: list[Vector] = [(0.32, 0.14, 0.14), (0.22, 0.22, -0.28), (0.0, -0.25, -0.42)]
+    spots: list[Vector] = [
+        (0.34, pen.uniform(-0.05, 0.2), pen.uniform(-0.05, 0.14)),
+        (0.22, pen.uniform(0.0, 0.22), -0.30),
+        (0.03, -0.22, -0.50),
+    ]
     if pen.chance(0.3):
         spots = [(0.30, -0.48, 0.18), (0.18, -0.25, -0.42), (0.05, 0.08, -0.45)]
     end = pen.through((pen.main,), spots, 0.5)
@@ -125,12 +129,12 @@ def _circles(pen: Pen) -> None:
     hands = BOTH if pen.chance(0.5) else (pen.main,)
     place, spread = (0.16, -0.12, -0.40), (0.08, 0.12, 0.06)
     arrival = pen.bring(hands, "chest", place, spread, median_s=0.6)
-    size = pen.uniform(0.06, 0.2)
+    size = pen.uniform(0.06, 0.3)
     flat = pen.chance(0.3)
     along = (size, 0.0, 0.0) if not flat else (0.0, 0.6 * size, 0.0)
     across = (0.0, pen.uniform(0.3, 1.0) * size, 0.0) if not flat else (0.0, 0.0, 0.6 * size)
-    frequency = pen.uniform(0.6, 1.8)
-    stop = arrival + pen.uniform(1.0, 2.5)
+    frequency = pen.uniform(0.6, 1.8) * min(1.0, 0.2 / size)
+    stop = arrival + pen.uniform(1.0, 3.0) / frequency
     opposed = pen.chance(0.4)
     for side in hands:
         phase = np.pi * side * opposed
@@ -211,7 +215,7 @@ def _knock(pen: Pen) -> None:
     place, spread = (0.14, 0.0, -0.40), (0.05, 0.08, 0.05)
     arrival = pen.bring((pen.main,), "chest", place, spread, median_s=0.6)
     stop = arrival + pen.uniform(0.6, 1.8)
-    along = (0.0, 0.3 * 0.06, -pen.uniform(0.03, 0.09))
+    along = (0.0, 0.02, -pen.uniform(0.03, 0.11))
     pen.swing(pen.main, arrival - 0.1, stop, along, pen.uniform(1.8, 4.0), ramp_s=0.15)
     pen.lower((pen.main,), stop)
 
@@ -269,23 +273,23 @@ ARMWORK: Mapping[str, tuple[float, Writer]] = MappingProxyType(
     {
         "lift_arms": (1.5, _lift_arms),
         "sideways": (1.0, _sideways),
-        "push_side": (1.5, _push_side),
+        "push_side": (1.8, _push_side),
         "push_forward": (1.0, _push_forward),
-        "throw": (1.2, _throw),
+        "throw": (2.0, _throw),
         "shoot": (1.3, _shoot),
         "punch": (1.2, _punch),
         "club": (1.0, _club),
-        "circles": (1.3, _circles),
-        "strokes": (1.0, _strokes),
-        "weapon": (1.2, _weapon),
+        "circles": (2.0, _circles),
+        "strokes": (2.0, _strokes),
+        "weapon": (2.2, _weapon),
         "drum": (1.3, _drum),
         "beat_time": (0.8, _beat_time),
         "clap": (1.3, _clap),
-        "knock": (0.8, _knock),
+        "knock": (1.4, _knock),
         "curl": (0.7, _curl),
         "catch": (0.8, _catch),
         "signal": (1.5, _signal),
-        "anything": (4.0, _anything),
+        "anything": (5.0, _anything),
     }
 )
 """Action -> (how often, what writes it)."""

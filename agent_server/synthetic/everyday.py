@@ -268,11 +268,11 @@ def _change_rest(pen: Pen) -> None:
 
 EVERYDAY: Mapping[str, tuple[float, Writer]] = MappingProxyType(
     {
-        "still": (6.0, _still),
-        "look_about": (3.0, _look_about),
-        "nod": (1.0, _nod),
-        "shift_weight": (2.5, _shift_weight),
-        "lean": (2.0, _lean),
+        "still": (3.5, _still),
+        "look_about": (2.0, _look_about),
+        "nod": (0.6, _nod),
+        "shift_weight": (1.6, _shift_weight),
+        "lean": (1.5, _lean),
         "scratch_head": (1.5, _scratch_head),
         "scratch_cheek": (0.7, _scratch_cheek),
         "hair": (1.2, _hair),
@@ -287,8 +287,8 @@ EVERYDAY: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "talk": (3.0, _talk),
         "point": (1.5, _point),
         "grasp": (2.0, _grasp),
-        "type": (2.0, _type),
-        "mouse": (1.0, _mouse),
+        "type": (1.5, _type),
+        "mouse": (0.7, _mouse),
         "text": (1.2, _text),
         "watch": (0.7, _watch),
         "clothes": (0.8, _clothes),
