@@ -13,6 +13,7 @@ from agent_server.errors import BundleError, InferenceError
 from agent_server.inference.manifest import read_manifest, write_manifest
 from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
 from agent_server.transports.server import CLASSIFIER, PREDICTOR, load_models
+from tests.support.bodies import core_joints
 
 
 @pytest.fixture
@@ -59,11 +60,15 @@ def test_a_row_of_a_batch_has_the_bits_that_it_has_alone(kind, name, run, frames
 
 
 def test_a_body_that_stands_still_is_predicted_to_stay_almost_where_it_is():
-    predictor = load_models().predictor
-    still = np.repeat(motions(4, 25)[:, 24:25], 25, axis=1)
-    future = predictor.predict(still)
+    standing, waiting = core_joints()[:, :3], core_joints(hands_up=True)[:, :3]
+    poses = np.stack([standing, waiting]) - standing[2]
+    still = np.repeat(poses[:, None], 25, axis=1)
+    future = load_models().predictor.predict(still)
     assert np.isfinite(future).all()
-    assert np.linalg.norm(future - still[:, 24:25], axis=-1).mean() < 0.1
+    moved = np.linalg.norm(future - still[:, 24:25], axis=-1).mean(axis=(1, 2))
+    # Arms that hang may hang on; hands held up will come down at some time.
+    assert moved[0] < 0.03
+    assert moved[1] < 0.15
 
 
 def test_the_forecast_goes_on_from_the_last_seen_pose_without_a_jump():
