@@ -1,7 +1,7 @@
 """Who listens to a session, and what each of them gets."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from agent_server.protocol import messages as m
 from agent_server.protocol.connection import CLOSE_TOO_SLOW
@@ -16,13 +16,11 @@ class Client:
         role: What it came as.
         hello: What it said of itself.
         outbox: What waits for it.
-        streams: Kinds of stream that it sends: ``body``, ``face``.
     """
 
     role: m.Role
     hello: m.Hello
     outbox: Outbox
-    streams: set[str] = field(default_factory=set)
 
     def wants(self, topic: m.Topic) -> bool:
         """Whether it asked for this kind of telemetry."""

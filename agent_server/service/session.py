@@ -12,10 +12,9 @@ from agent_server.domain.command import Command
 from agent_server.domain.motion import BodyLost
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.stamp import NS_PER_MS, NS_PER_S
-from agent_server.errors import InferenceError, InvalidInput
+from agent_server.errors import InferenceError
 from agent_server.protocol import convert
 from agent_server.protocol import messages as m
-from agent_server.protocol.connection import CLOSE_REPLACED
 from agent_server.recording.records import (
     BodyGone,
     RendererChanged,
@@ -28,6 +27,7 @@ from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Audience, Client
 from agent_server.service.core import Core, Job, PendingWindow
 from agent_server.service.journal import Journal
+from agent_server.service.seats import Seats
 from agent_server.service.timeline import Timeline
 from agent_server.service.worker import Inference, InferenceWorker
 
@@ -77,8 +77,7 @@ class Session:
         self._journal = journal
         self._core = Core(session, settings, rules, worker.models.hashes)
         self._timeline = Timeline()
-        self._owners: dict[str, Client] = {}
-        self._renderer: Client | None = None
+        self._seats = Seats()
         self._jobs: deque[_Waiting] = deque()
         self._wake = asyncio.Event()
         self._is_inferring = False
@@ -92,7 +91,8 @@ class Session:
             InvalidInput: If it wants to act as the renderer and another one does.
         """
         if client.role == "renderer" and not client.hello.mirror:
-            self._seat_renderer(client)
+            self._seats.claim_room(client)
+            self._set_renderer(True)
         self.audience.clients.append(client)
         if client.role == "sensor":
             self._update_face(is_open=True)
@@ -101,13 +101,9 @@ class Session:
         """Remove a client."""
         self.audience.clients.remove(client)
         self._timeline.forget(id(client))
-        for kind in client.streams:
-            if self._owners.get(kind) is client:
-                del self._owners[kind]
         if client.role == "sensor":
             self._update_face(is_open=False)
-        if self._renderer is client:
-            self._renderer = None
+        if self._seats.leave(client):
             self._set_renderer(False)
 
     def scene(self) -> m.SceneState:
@@ -136,7 +132,7 @@ class Session:
     def _take_skeleton(
         self, client: Client, message: m.Skeleton | m.PackedSkeleton, arrival_ns: int
     ) -> None:
-        self._own("body", client)
+        self._seats.claim_stream("body", client)
         stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
         frame = convert.skeleton_from_message(message, stamp_ns)
         jobs = self._core.observe(frame)
@@ -148,7 +144,7 @@ class Session:
             self.audience.show("pose", convert.pose_message(latest))
 
     def _take_affect(self, client: Client, message: m.Affect, arrival_ns: int) -> None:
-        self._own("face", client)
+        self._seats.claim_stream("face", client)
         stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
         sample = convert.affect_from_message(message, stamp_ns)
         self._core.feel(sample)
@@ -159,7 +155,7 @@ class Session:
         )
 
     def _take_ack(self, client: Client, message: m.AckMessage) -> None:
-        self._require_acting(client)
+        self._seats.require_room(client)
         ack = convert.ack_from_message(message, self._now())
         heard = self._core.acknowledge(ack)
         self.counters["acks" if heard.taken else "stale_acks"] += 1
@@ -172,7 +168,7 @@ class Session:
         self.audience.show_scene(self.scene())
 
     def _take_scene_event(self, client: Client, message: m.SceneEvent) -> None:
-        self._require_acting(client)
+        self._seats.require_room(client)
         event = ObjectChanged(self._now(), message.object, message.state)
         commands = self._core.change_object(event)
         self.counters["scene_events"] += 1
@@ -319,44 +315,10 @@ class Session:
     def _now(self) -> int:
         return self._timeline.now(self._clock.now_ns())
 
-    def _own(self, kind: str, client: Client) -> None:
-        owner = self._owners.get(kind)
-        if owner is client:
-            return
-        if owner is not None:
-            if not client.hello.take_over:
-                raise InvalidInput(
-                    f"another sensor already sends this session's {kind}: say hello with "
-                    "take_over = true to replace it",
-                    code="stream_taken",
-                )
-            owner.outbox.close(CLOSE_REPLACED, f"another sensor took over the {kind}")
-        self._owners[kind] = client
-        client.streams.add(kind)
-
-    def _seat_renderer(self, client: Client) -> None:
-        if self._renderer is not None:
-            if not client.hello.take_over:
-                raise InvalidInput(
-                    "another renderer acts for this session: say hello with mirror = true to "
-                    "watch, or with take_over = true to replace it",
-                    code="renderer_taken",
-                )
-            self._renderer.outbox.close(CLOSE_REPLACED, "another renderer took over")
-        self._renderer = client
-        self._set_renderer(True)
-
     def _set_renderer(self, attached: bool) -> None:
         now_ns = self._now()
         self._journal.append_core(RendererChanged(now_ns, attached))
         self._deliver(self._core.set_renderer(attached, now_ns))
-
-    def _require_acting(self, client: Client) -> None:
-        if self._renderer is not client:
-            raise InvalidInput(
-                "only the acting renderer speaks for the room; a mirror watches",
-                code="not_acting",
-            )
 
     def _update_face(self, *, is_open: bool) -> None:
         """A face is expected unless every sensor that is there has none."""

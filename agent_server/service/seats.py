@@ -1,0 +1,69 @@
+"""Who of a session's clients may speak for the body, the face and the room: one at a time."""
+
+from agent_server.errors import InvalidInput
+from agent_server.protocol.connection import CLOSE_REPLACED
+from agent_server.service.audience import Client
+
+
+class Seats:
+    """One sender a stream and one acting renderer; another takes over only when it asks to."""
+
+    def __init__(self) -> None:
+        self._senders: dict[str, Client] = {}
+        self._renderer: Client | None = None
+
+    def claim_stream(self, kind: str, client: Client) -> None:
+        """Take the seat of the stream ``kind``, which its sender keeps.
+
+        Raises:
+            InvalidInput: If another sensor has it and this one did not ask to take over.
+        """
+        sender = self._senders.get(kind)
+        if sender is client:
+            return
+        if sender is not None:
+            if not client.hello.take_over:
+                raise InvalidInput(
+                    f"another sensor already sends this session's {kind}: say hello with "
+                    "take_over = true to replace it",
+                    code="stream_taken",
+                )
+            sender.outbox.close(CLOSE_REPLACED, f"another sensor took over the {kind}")
+        self._senders[kind] = client
+
+    def claim_room(self, client: Client) -> None:
+        """Take the seat of the acting renderer.
+
+        Raises:
+            InvalidInput: If another renderer has it and this one did not ask to take over.
+        """
+        if self._renderer is not None:
+            if not client.hello.take_over:
+                raise InvalidInput(
+                    "another renderer acts for this session: say hello with mirror = true to "
+                    "watch, or with take_over = true to replace it",
+                    code="renderer_taken",
+                )
+            self._renderer.outbox.close(CLOSE_REPLACED, "another renderer took over")
+        self._renderer = client
+
+    def require_room(self, client: Client) -> None:
+        """Refuse a renderer that does not act.
+
+        Raises:
+            InvalidInput: If it is not the acting renderer.
+        """
+        if self._renderer is not client:
+            raise InvalidInput(
+                "only the acting renderer speaks for the room; a mirror watches",
+                code="not_acting",
+            )
+
+    def leave(self, client: Client) -> bool:
+        """Free the client's seats; tells whether it was the acting renderer."""
+        for kind in [kind for kind, sender in self._senders.items() if sender is client]:
+            del self._senders[kind]
+        was_acting = self._renderer is client
+        if was_acting:
+            self._renderer = None
+        return was_acting
