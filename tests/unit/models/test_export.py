@@ -8,8 +8,12 @@ pytest.importorskip("onnxscript", reason="needs the train extra")
 
 from agent_server.domain.gesture import GESTURES  # noqa: E402
 from agent_server.errors import BundleError  # noqa: E402
-from agent_server.inference.manifest import GOLDEN_FILE, MODEL_FILE, Manifest  # noqa: E402
-from agent_server.inference.manifest import read_manifest  # noqa: E402
+from agent_server.inference.manifest import (  # noqa: E402
+    GOLDEN_FILE,
+    MODEL_FILE,
+    Manifest,
+    read_manifest,
+)
 from models.export.bundle import Export, write_bundle  # noqa: E402
 from models.export.calibration import fit_temperature  # noqa: E402
 from models.export.onnx import check_parity, is_batch_exact, write_onnx  # noqa: E402

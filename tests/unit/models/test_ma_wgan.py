@@ -9,7 +9,7 @@ torch = pytest.importorskip("torch", reason="needs the train extra")
 from agent_server.errors import ConfigError  # noqa: E402
 from models.data.windows import Recording, WindowSet, cut  # noqa: E402
 from models.ma_wgan.config import NetworkConfig, TrainConfig  # noqa: E402
-from models.ma_wgan.network import Critic, Generator  # noqa: E402
+from models.ma_wgan.network import Critic, Generator, log_liveliness  # noqa: E402
 from models.ma_wgan.train import (  # noqa: E402
     Trainer,
     load_predictor,
@@ -40,7 +40,7 @@ def waving(count: int = 6, frames: int = 100) -> WindowSet:
         motion = np.repeat(pose[None], frames, axis=0)
         motion[:, 8] += swing
         motion[:, 5] -= 0.5 * swing
-        motion = (motion + [0.0, 0.0, 2.0]).astype(np.float32)
+        motion = (motion + np.array([0.0, 0.0, 2.0])).astype(np.float32)
         takes.append(Recording(motion, motion, None, 0, 0, "v00"))
     return cut(takes)
 
@@ -75,9 +75,7 @@ def test_turning_the_body_turns_the_future() -> None:
     network = random_generator()
     seen = waving().frames(torch.arange(4))[0][:, :25]
     angle = torch.tensor(0.6)
-    turn = torch.tensor(
-        [[angle.cos(), 0, -angle.sin()], [0, 1, 0], [angle.sin(), 0, angle.cos()]]
-    )
+    turn = torch.tensor([[angle.cos(), 0, -angle.sin()], [0, 1, 0], [angle.sin(), 0, angle.cos()]])
     # The tiny fallback along x keeps this from being exact.
     torch.testing.assert_close(network(seen @ turn), network(seen) @ turn, atol=2e-3, rtol=0)
 
@@ -90,6 +88,18 @@ def test_degenerate_bodies_give_finite_futures_and_gradients() -> None:
     assert torch.isfinite(future).all()
     assert seen.grad is not None
     assert torch.isfinite(seen.grad).all()
+
+
+def test_a_frozen_stream_stays_and_a_trembling_one_is_left_alone() -> None:
+    network = random_generator()
+    pose = waving().frames(torch.arange(4))[0][:, :1]
+    frozen = pose.expand(-1, 25, -1, -1)
+    torch.testing.assert_close(network(frozen), pose.expand(-1, 50, -1, -1), atol=1e-4, rtol=0)
+    trembling = frozen + 3e-4 * torch.randn(
+        frozen.shape, generator=torch.Generator().manual_seed(0)
+    )
+    shares = torch.exp(log_liveliness(trembling.flatten(2)))
+    assert float(shares.min()) > 0.99
 
 
 def test_the_target_decodes_to_the_true_future() -> None:
