@@ -286,7 +286,7 @@ ARMWORK: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "beat_time": (0.8, _beat_time),
         "clap": (1.3, _clap),
         "knock": (1.4, _knock),
-        "curl": (0.7, _curl),
+        "curl": (1.3, _curl),
         "catch": (0.8, _catch),
         "signal": (1.5, _signal),
         "anything": (5.0, _anything),

@@ -131,7 +131,7 @@ def _involuntary(
     rng: np.random.Generator, person: Person, placement: Placement
 ) -> tuple[Drift, Drift, Drift, Drift, Drift]:
     """Sway (some 5 to 10 mm standing, Winter 1995), trunk, head and hands at rest."""
-    life = person.liveliness * float(np.exp(rng.normal(0, 0.3)))
+    life = float(np.clip(person.liveliness * np.exp(rng.normal(0, 0.3)), 0.3, 2.2))
     sway = life * (0.4 if placement.seated else 1.0)
     return (
         sample_drift(rng, (0.009 * sway, 0.001 * sway, 0.006 * sway)),

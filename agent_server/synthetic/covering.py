@@ -12,8 +12,8 @@ from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees, fli
 from agent_server.synthetic.trajectory import ORIGIN, Vector
 
 Swivel = tuple[float, float]
-_FORWARD: Vector = (0.06, 0.0, -0.18)
-_SIDEWAYS: Vector = (0.22, 0.0, -0.12)
+_FORWARD: Vector = (0.05, 0.0, -0.21)
+_SIDEWAYS: Vector = (0.28, 0.0, -0.12)
 
 
 def _fidget(pen: Pen, hands: Hands, start_s: float, stop_s: float) -> None:
@@ -42,7 +42,7 @@ def _at_face(
     )
     release = arrival + pen.hold()
     _fidget(pen, hands, arrival - 0.2, release)
-    end = pen.lower(hands, release)
+    end = pen.lower(hands, release, median_s=median_s + 0.08, bow=bow)
     flinch(pen, pen.start_s + 0.15, end, pitch)
 
 
@@ -50,8 +50,8 @@ def _at_face(
 
 
 def _eyes_both(pen: Pen) -> None:
-    place, spread = (0.122, -0.08, -0.15), (0.022, 0.030, 0.018)
-    swivel = (80.0, 14.0) if pen.chance(0.10) else (32.0, 9.0)
+    place, spread = (0.128, -0.08, -0.152), (0.022, 0.030, 0.018)
+    swivel = (80.0, 14.0) if pen.chance(0.06) else (32.0, 9.0)
     _at_face(pen, BOTH, place, spread, swivel, fingers=(-0.7, 0.6, 0.3), pitch=6)
 
 
@@ -83,25 +83,25 @@ def _forearm(pen: Pen) -> None:
 
 
 def _ears_palms(pen: Pen) -> None:
-    place, spread = (0.15, 0.0, -0.085), (0.018, 0.028, 0.03)
+    place, spread = (0.15, 0.0, -0.122), (0.018, 0.028, 0.03)
     swivel, fingers = (57.0, 15.0), (-0.3, 0.8, 0.5)
     _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=5, bow=_SIDEWAYS)
 
 
 def _ears_fingers(pen: Pen) -> None:
-    place, spread = (0.165, -0.055, -0.055), (0.018, 0.03, 0.035)
+    place, spread = (0.165, -0.055, -0.085), (0.018, 0.03, 0.035)
     swivel, fingers = (54.0, 19.0), (-0.8, 0.5, 0.2)
     _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=6, bow=_SIDEWAYS)
 
 
 def _ears_clutch(pen: Pen) -> None:
-    place, spread = (0.145, 0.04, -0.01), (0.022, 0.03, 0.035)
+    place, spread = (0.145, 0.04, -0.045), (0.022, 0.03, 0.035)
     swivel, fingers = (62.0, 15.0), (-0.3, 0.9, 0.4)
     _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=12, bow=_SIDEWAYS)
 
 
 def _ears_front(pen: Pen) -> None:
-    place, spread = (0.13, -0.01, -0.10), (0.02, 0.03, 0.02)
+    place, spread = (0.13, -0.01, -0.118), (0.02, 0.03, 0.02)
     swivel, fingers = (55.0, 15.0), (0.0, 0.6, 0.9)
     _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=6, bow=_SIDEWAYS)
 

@@ -15,6 +15,8 @@ from agent_server.synthetic.trajectory import ORIGIN, Move, Oscillation, Vector
 LEFT, RIGHT = 0, 1
 Hands = tuple[int, ...]
 BOTH: Hands = (LEFT, RIGHT)
+HOMEWARDS: Vector = (0.07, 0.0, -0.13)
+"""How far the way back to rest typically swings out."""
 SECONDS_PER_METRE = 0.36
 """Nobody moves a hand faster: a minimum-jerk peak of 1.875 / 0.36 = 5.2 m/s."""
 
@@ -183,7 +185,7 @@ class Pen:
         shared = self.around(centre, spread)
         mean = natural_swivel(frame, shared) if swivel is None else swivel[0]
         turned = float(np.clip(self.rng.normal(mean, swivel[1] if swivel else 8.0), -30, 130))
-        path = self.around(bow, (0.07, 0.02, 0.06))
+        path = self.around(bow, (0.05 + 0.3 * bow[0], 0.02, 0.06))
         start = self.start_s if start_s is None else start_s
         duration = self.seconds(median_s)
         arrival = start
@@ -224,26 +226,41 @@ class Pen:
             at += 0.85 * (end - at)
         return end
 
-    def lower(self, hands: Hands, start_s: float, *, median_s: float = 0.85) -> float:
-        """Brings hands back to rest; returns when the last one is there."""
-        return self._rest_at(hands, self.rest, start_s, self.seconds(median_s))
+    def lower(
+        self, hands: Hands, start_s: float, *, median_s: float = 0.85, bow: Vector = HOMEWARDS
+    ) -> float:
+        """Brings hands back to rest; returns when the last one is there.
+
+        Args:
+            hands: Which ones.
+            start_s: When they set out.
+            median_s: Typical duration.
+            bow: How far the path typically swings out.
+        """
+        return self._rest_at(hands, self.rest, start_s, self.seconds(median_s), bow)
 
     def settle(self, hands: Hands, rest: tuple[Reach, Reach]) -> float:
         """Lets hands come to rest elsewhere; returns when the last one is there."""
-        return self._rest_at(hands, rest, self.start_s, self.seconds(1.1))
+        return self._rest_at(hands, rest, self.start_s, self.seconds(1.1), HOMEWARDS)
 
     def _rest_at(
-        self, hands: Hands, rests: tuple[Reach, Reach], start_s: float, duration_s: float
+        self,
+        hands: Hands,
+        rests: tuple[Reach, Reach],
+        start_s: float,
+        duration_s: float,
+        bow: Vector,
     ) -> float:
+        path = self.around(bow, (0.04 + 0.3 * bow[0], 0.03, 0.05))
         end = start_s
         for side in hands:
             rest = rests[side]
             begin = start_s + (self._delay[1 - side] if len(hands) > 1 else 0.0)
             mine = duration_s * self.uniform(0.9, 1.1)
-            bow = self.around((0.07, 0.0, -0.13), 0.05)
+            curve = self.around(path, 0.02)
             swivel = float(np.degrees(rest.swivel_rad))
             arrival = self.reach(
-                side, begin, mine, rest.frame, rest.point, swivel, hand=rest.hand, bow=bow
+                side, begin, mine, rest.frame, rest.point, swivel, hand=rest.hand, bow=curve
             )
             end = max(end, arrival)
         return end

@@ -119,8 +119,8 @@ def test_hands_rest_before_and_after_a_gesture() -> None:
             clip, motion = played(gesture, variant, 3)
             speed = np.linalg.norm(np.diff(motion.joints[:, WRISTS], axis=0), axis=2) / 0.02
             times = motion.times_s[1:]
-            assert speed[times < clip.onset_s].max() < 0.15
-            assert speed[times > clip.offset_s + 0.02].max() < 0.15
+            assert speed[times < clip.onset_s].max() < 0.25
+            assert speed[times > clip.offset_s + 0.02].max() < 0.25
             during = speed[(times > clip.onset_s) & (times < clip.offset_s)]
             assert during.max() > 0.4
 
