@@ -5,6 +5,8 @@ import os
 import socket
 import sys
 import webbrowser
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -17,15 +19,18 @@ from agent_server.cli.options import PortOption, run, settings_with
 from agent_server.cli.story import Story
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.skeleton import SkeletonFrame
-from agent_server.domain.stamp import NS_PER_MS
+from agent_server.domain.stamp import NS_PER_S
+from agent_server.errors import AgentServerError
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.service.hub import Hub
-from agent_server.transports.client import Client, join, send_paced
+from agent_server.transports.client import Client, ConnectionFailed, join, send_paced
+from agent_server.transports.renderer import TimedRenderer
 from agent_server.transports.server import address, bind, build_hub, load_models, serving
 
 SESSION = "demo"
-PAUSE_NS = 3000 * NS_PER_MS
+FAREWELL_S = 0.5
+PAUSE_NS = 3 * NS_PER_S
 """Between two rounds the person is away, long enough to count as gone."""
 
 
@@ -43,7 +48,8 @@ def demo(
     recording = open_recording(file or assets.demo_recording())
     settings = settings_with(None, None, port)
     hub = build_hub(settings, load_models())
-    run(_demo(hub, bind(settings), recording, rounds, browser=browser))
+    main = _demo(hub, bind(settings), recording, rounds, browser=browser)
+    run(main, interrupted_status=0)
 
 
 async def _demo(
@@ -57,24 +63,43 @@ async def _demo(
         console.print(f"Playing:   {recording.metadata.description or recording.path.name}\n")
         if browser and _has_screen():
             await asyncio.to_thread(webbrowser.open, page)
-        async with join(base, SESSION, "monitor") as monitor:
-            listening = asyncio.create_task(_listen(monitor, Story(console)))
-            playing = asyncio.create_task(_play(base, recording, rounds))
-            await asyncio.wait((listening, playing, stopped), return_when=asyncio.FIRST_COMPLETED)
-            for task in (listening, playing):
-                if task.done():
-                    task.result()
+        async with (
+            join(base, SESSION, "monitor", hello=_hello(topics=["decision"])) as monitor,
+            join(base, SESSION, "renderer", hello=_hello()) as connection,
+        ):
+            renderer = TimedRenderer(connection)
+            acting = asyncio.create_task(_act(renderer))
+            tasks = (
+                asyncio.create_task(_listen(monitor, Story(console))),
+                asyncio.create_task(_play(base, recording, rounds, renderer)),
+            )
+            await asyncio.wait((*tasks, stopped), return_when=asyncio.FIRST_COMPLETED)
+            for task in (*tasks, acting):
                 task.cancel()
+            results = await asyncio.gather(*tasks, return_exceptions=True)
+            # A server that is being stopped sends its clients away before it says so.
+            await asyncio.wait((stopped,), timeout=FAREWELL_S)
+            if not stopped.done():
+                _raise_first(results)
 
 
-async def _play(url: str, recording: Recording, rounds: int) -> None:
+def _raise_first(results: Iterable[BaseException | None]) -> None:
+    for result in results:
+        if isinstance(result, AgentServerError):
+            raise result
+
+
+def _hello(topics: list[m.Topic] | None = None) -> m.Hello:
+    return m.Hello(m.PROTOCOL, "agent-server-demo", __version__, topics=topics)
+
+
+async def _play(url: str, recording: Recording, rounds: int, renderer: TimedRenderer) -> None:
     """Play the recording again and again as one person who comes and goes."""
-    hello = m.Hello(m.PROTOCOL, "agent-server-demo", __version__)
     inputs = [
         event for event in recording.events() if isinstance(event, SkeletonFrame | AffectSample)
     ]
     length_ns = inputs[-1].originating_ns + PAUSE_NS
-    async with join(url, SESSION, "sensor", hello=hello) as sensor:
+    async with join(url, SESSION, "sensor", hello=_hello()) as sensor:
         played = 0
         while rounds == 0 or played < rounds:
             shift_ns = played * length_ns
@@ -86,8 +111,16 @@ async def _play(url: str, recording: Recording, rounds: int) -> None:
                 ),
                 1.0,
             )
-            await asyncio.sleep(PAUSE_NS / 1e9)
+            await asyncio.sleep(PAUSE_NS / NS_PER_S)
+            with suppress(ConnectionFailed):
+                await renderer.restore()
             played += 1
+
+
+async def _act(renderer: TimedRenderer) -> None:
+    """Carry commands out until somebody brings a renderer of their own and takes over."""
+    with suppress(ConnectionFailed):
+        await renderer.run()
 
 
 async def _listen(monitor: Client, story: Story) -> None:

@@ -31,13 +31,18 @@ def settings_with(config: Path | None, host: str | None, port: int | None) -> Se
     return msgspec.structs.replace(settings, server=server)
 
 
-def run(main: Coroutine[Any, Any, None]) -> None:
-    """Run a coroutine until it ends or the user interrupts it."""
+def run(main: Coroutine[Any, Any, None], *, interrupted_status: int = 130) -> None:
+    """Run a coroutine until it ends or the user interrupts it.
+
+    Args:
+        main: What to run.
+        interrupted_status: Exit status after an interruption; 0 where that is the way to stop.
+    """
     try:
         with asyncio.Runner(loop_factory=_new_loop) as runner:
             runner.run(main)
     except KeyboardInterrupt:
-        raise typer.Exit(130) from None
+        raise typer.Exit(interrupted_status) from None
 
 
 def _new_loop() -> asyncio.AbstractEventLoop:

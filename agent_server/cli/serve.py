@@ -33,7 +33,7 @@ def serve(
     """Take sensors, renderers and monitors until stopped."""
     settings = settings_with(config, host, port)
     hub = build_hub(settings, load_models(), record)
-    run(_serve(hub, bind(settings), as_json=as_json))
+    run(_serve(hub, bind(settings), as_json=as_json), interrupted_status=0)
 
 
 async def _serve(hub: Hub, listener: socket.socket, *, as_json: bool) -> None:

@@ -21,6 +21,7 @@ from agent_server.protocol.connection import (
 )
 from agent_server.protocol.convert import skeleton_to_message
 from agent_server.transports.client import ConnectionFailed, join, send_paced
+from agent_server.transports.renderer import TimedRenderer
 from tests.support.bodies import stream
 from tests.support.live import all_decisions, live, next_of
 from tests.support.models import fake_models
@@ -299,3 +300,26 @@ async def test_a_client_that_finds_no_server_is_told():
             assert other.url != url
             async with join(url, "s", "sensor"):
                 pass
+
+
+async def test_a_renderer_without_a_picture_carries_commands_out_and_restores_the_room():
+    async with (
+        live(settings=OPEN_GATE) as server,
+        server.join("monitor") as monitor,
+        server.join("renderer") as connection,
+        server.join("sensor", hello=HEADSET) as sensor,
+    ):
+        renderer = TimedRenderer(connection)
+        running = asyncio.create_task(renderer.run())
+        await send_paced(sensor, GESTURE, 20.0)
+        command = await next_of(monitor, m.CommandMessage)
+        done = await next_of(monitor, m.AckTelemetry, within_s=20)
+        while done.status != "done":
+            done = await next_of(monitor, m.AckTelemetry, within_s=20)
+        assert (done.command_id, command.reaction) == ("s/c1", "turn_down_hifi")
+        while (await next_of(monitor, m.SceneState)).objects["hifi"] != "low":
+            pass
+        await renderer.restore()
+        while (await next_of(monitor, m.SceneState)).objects["hifi"] != "high":
+            pass
+        running.cancel()
