@@ -83,7 +83,7 @@ def _forearm(pen: Pen) -> None:
 
 
 def _ears_palms(pen: Pen) -> None:
-    place, spread = (0.15, 0.0, -0.122), (0.018, 0.028, 0.03)
+    place, spread = (0.15, 0.018, -0.115), (0.018, 0.028, 0.03)
     swivel, fingers = (57.0, 15.0), (-0.3, 0.8, 0.5)
     _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=5, bow=_SIDEWAYS)
 
@@ -101,7 +101,7 @@ def _ears_clutch(pen: Pen) -> None:
 
 
 def _ears_front(pen: Pen) -> None:
-    place, spread = (0.13, -0.01, -0.118), (0.02, 0.03, 0.02)
+    place, spread = (0.13, 0.01, -0.115), (0.02, 0.03, 0.02)
     swivel, fingers = (55.0, 15.0), (0.0, 0.6, 0.9)
     _at_face(pen, BOTH, place, spread, swivel, fingers=fingers, pitch=6, bow=_SIDEWAYS)
 
