@@ -20,6 +20,7 @@ from models.export.classifier import export_classifier
 from models.export.predictor import export_predictor
 from models.export.session import OnnxModel
 from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
+from models.interformer.train import load_classifier
 from models.interformer.train import train as train_classifier
 from models.ma_wgan.config import CONFIGS as MA_WGAN_CONFIGS
 from models.ma_wgan.train import load_predictor
@@ -80,6 +81,9 @@ def train_interformer(
     data: DataOption,
     out: OutOption,
     predictor: Annotated[Path, typer.Option("--predictor", help="Run of a trained predictor.")],
+    initial: Annotated[
+        Path | None, typer.Option("--init", help="Run whose best weights to start from.")
+    ] = None,
     config: ConfigOption = "server",
     seed: SeedOption = 0,
     resume: ResumeOption = False,
@@ -91,7 +95,8 @@ def train_interformer(
     if steps is not None:
         chosen = replace(chosen, steps=steps)
     torch.set_num_threads(1)
-    command = _command("interformer", config, seed, steps, " --predictor PREDICTOR_RUN")
+    extra = " --predictor PREDICTOR_RUN" + (" --init FIRST_RUN" if initial else "")
+    command = _command("interformer", config, seed, steps, extra)
     run = Run(out, chosen, seed, command, resume)
     training = join(
         [
@@ -105,7 +110,8 @@ def train_interformer(
             cut(cmu_split(data, "validation"), stride=5),
         ]
     )
-    train_classifier(chosen, run, training, validation, load_predictor(predictor))
+    start = load_classifier(initial) if initial else None
+    train_classifier(chosen, run, training, validation, load_predictor(predictor), start)
 
 
 export_app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")

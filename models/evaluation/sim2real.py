@@ -14,7 +14,7 @@ import numpy as np
 from agent_server.domain.arrays import Float32
 from agent_server.domain.gesture import GESTURES, IDLE
 from agent_server.domain.motion import CLASSIFIED_FRAMES, RATE_HZ, SEEN_FRAMES
-from agent_server.domain.skeleton import CoreJoint
+from agent_server.domain.skeleton import CORE_JOINTS, CoreJoint
 from agent_server.errors import InvalidInput
 from agent_server.skeleton.readers.msrc12 import read_msrc12
 from agent_server.skeleton.readers.source import SourceRecording
@@ -64,9 +64,8 @@ def core_stream(recording: SourceRecording) -> CoreStream:
         core = retargeter.push(frame)
         if core is not None:
             frames += resampler.push(core)
-    return CoreStream(
-        np.array([f.stamp_ns for f in frames]), np.stack([f.positions for f in frames])
-    )
+    positions = np.array([f.positions for f in frames], np.float32).reshape(-1, CORE_JOINTS, 3)
+    return CoreStream(np.array([f.stamp_ns for f in frames], np.int64), positions)
 
 
 def msrc12_windows(data: Path) -> tuple[Float32, np.ndarray]:
