@@ -3,7 +3,8 @@
 Skeletons of different sensors differ by constant offsets: Kinect v1 puts the shoulders some
 6 cm below the joint's centre and the wrist short of it, Kinect v2's SpineShoulder lies below
 v1's ShoulderCenter and its SpineMid well above v1's Spine. The offsets of v1 were
-measured on recordings of 20 people (medians), those of v2 follow the SDK's sample skeletons.
+measured on recordings of 20 people (medians), those of v2 and of
+the webcam are estimates, those of markers were set to CMU's skeletons.
 """
 
 from collections.abc import Mapping
