@@ -26,6 +26,7 @@ class Outbox:
         self._latest: dict[str, Message] = {}
         self._max_commands = max_commands
         self._ready = asyncio.Event()
+        self._closing = asyncio.Event()
         self.missed = 0
         self.close_code: int | None = None
         self.close_reason = ""
@@ -58,6 +59,11 @@ class Outbox:
         if self.close_code is None:
             self.close_code, self.close_reason = code, reason
         self._ready.set()
+        self._closing.set()
+
+    async def closing(self) -> None:
+        """Wait until the connection is to be closed."""
+        await self._closing.wait()
 
     async def take(self) -> list[Message]:
         """Wait for something to send; an empty list means that it is time to close."""

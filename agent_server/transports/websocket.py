@@ -18,6 +18,7 @@ from agent_server.service.session import Session
 
 log = logging.getLogger(__name__)
 
+FAREWELL_S = 2.0
 _SESSION_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}")
 
 
@@ -128,13 +129,15 @@ class _Visit:
                 writer = group.create_task(self._write())
                 timeout = self._hub.settings.server.hello_timeout_s
                 reader = group.create_task(self._read(timeout))
-                # Whoever ends first ends the visit; the writer still sends what it has.
-                await asyncio.wait((reader, writer), return_when=asyncio.FIRST_COMPLETED)
-                if reader.done():
-                    self._outbox.close(c.CLOSE_NORMAL, "")
-                    await asyncio.wait((writer,), timeout=2.0)
-                reader.cancel()
-                writer.cancel()
+                closing = group.create_task(self._outbox.closing())
+                tasks = (reader, writer, closing)
+                await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+                # Whoever ends first ends the visit; the writer may still send what it has, but
+                # a client that takes nothing any more does not keep its place.
+                self._outbox.close(c.CLOSE_NORMAL, "")
+                await asyncio.wait((writer,), timeout=FAREWELL_S)
+                for task in tasks:
+                    task.cancel()
         except* WebSocketDisconnect:
             log.debug("session %s: a %s left", self._session_id, self._connection.role)
         finally:
