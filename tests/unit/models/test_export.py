@@ -54,6 +54,17 @@ def test_onnx_computes_what_torch_does(predictor: tuple[Generator, OnnxModel]) -
     assert model(windows(25, 1)).shape == (1, 50, 9, 3)
 
 
+def test_a_file_holds_no_trace_of_where_it_was_made(tmp_path: Path) -> None:
+    path = tmp_path / "model.onnx"
+    write_onnx(generator(), torch.from_numpy(windows(25)[:2]), path, "seen", "future")
+    data = path.read_bytes()
+    assert b".py" not in data
+    assert b"stack_trace" not in data
+    other = tmp_path / "other.onnx"
+    write_onnx(generator(), torch.from_numpy(windows(25)[:2]), other, "seen", "future")
+    assert other.read_bytes() == data
+
+
 def test_another_network_is_found_out(predictor: tuple[Generator, OnnxModel]) -> None:
     network, model = predictor
     with torch.no_grad():
