@@ -18,10 +18,10 @@ $(STAMP): pyproject.toml hatch_build.py
 page: $(STAMP)
 	$(BIN)/python hatch_build.py
 
-demo: $(STAMP)
+demo: page
 	$(BIN)/agent-server demo
 
-test: $(STAMP)
+test: page
 	$(BIN)/python -m coverage erase
 	$(BIN)/python -m coverage run -m pytest
 	$(BIN)/python -m coverage combine --quiet

@@ -4,6 +4,7 @@ Defaults are sane; a TOML file may override any of them, section by section.
 """
 
 import tomllib
+from math import isfinite
 from pathlib import Path
 from typing import Literal
 
@@ -14,6 +15,12 @@ from agent_server.errors import ConfigError
 
 class _Section(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Base of every section: unknown keys are refused."""
+
+
+def _check_finite(section: _Section) -> None:
+    for name in section.__struct_fields__:
+        value = getattr(section, name)
+        _require(not isinstance(value, float) or isfinite(value), f"{name} must be finite")
 
 
 def _require(condition: bool, sentence: str) -> None:
@@ -36,6 +43,7 @@ class WindowSettings(_Section, frozen=True):
     max_gap_ms: int = 250
 
     def __post_init__(self) -> None:
+        _check_finite(self)
         _require(1 <= self.hop_frames <= 25, "hop_frames must lie in 1..25")
         _require(40 <= self.max_gap_ms <= 2000, "max_gap_ms must lie in 40..2000")
 
@@ -61,6 +69,7 @@ class SubjectSettings(_Section, frozen=True):
     lost_s: float = 2.0
 
     def __post_init__(self) -> None:
+        _check_finite(self)
         _require(
             (self.policy == "explicit") == (self.body_id is not None),
             "body_id goes with policy = 'explicit' and with no other",
@@ -91,6 +100,7 @@ class GateSettings(_Section, frozen=True):
     max_age_ms: int = 1000
 
     def __post_init__(self) -> None:
+        _check_finite(self)
         _require(
             self.enter_valence <= self.leave_valence <= self.pleasant_valence,
             "enter_valence <= leave_valence <= pleasant_valence must hold",
@@ -120,6 +130,7 @@ class DecideSettings(_Section, frozen=True):
     cooldown_s: float = 2.0
 
     def __post_init__(self) -> None:
+        _check_finite(self)
         _require(0 < self.leave <= self.enter < 1, "0 < leave <= enter < 1 must hold")
         _require(self.enter_windows >= 1, "enter_windows must be at least 1")
         _require(self.leave_windows >= 1, "leave_windows must be at least 1")
@@ -152,6 +163,7 @@ class ServerSettings(_Section, frozen=True):
     session_linger_s: float = 60.0
 
     def __post_init__(self) -> None:
+        _check_finite(self)
         _require(0 <= self.port <= 65535, "port must lie in 0..65535")
         _require(self.max_message_bytes >= 4096, "max_message_bytes must be at least 4096")
         for name in ("max_sessions", "max_errors", "hello_timeout_s", "heartbeat_s"):

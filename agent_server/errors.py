@@ -42,4 +42,3 @@ class InferenceError(AgentServerError):
 
 class RecordingError(AgentServerError):
     """A recording cannot be read or written; the text names the file."""
-

@@ -14,13 +14,13 @@ from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import cut, join
 from models.evaluation.latency import bundle_latency
+from models.evaluation.real_streams import msrc12_stream_report
 from models.evaluation.report import classifier_report, prediction_report
 from models.evaluation.sim2real import sim2real_report
 from models.export.classifier import export_classifier
 from models.export.predictor import export_predictor
 from models.export.session import OnnxModel
 from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
-from models.interformer.train import load_classifier
 from models.interformer.train import train as train_classifier
 from models.ma_wgan.config import CONFIGS as MA_WGAN_CONFIGS
 from models.ma_wgan.train import load_predictor
@@ -81,9 +81,6 @@ def train_interformer(
     data: DataOption,
     out: OutOption,
     predictor: Annotated[Path, typer.Option("--predictor", help="Run of a trained predictor.")],
-    initial: Annotated[
-        Path | None, typer.Option("--init", help="Run whose best weights to start from.")
-    ] = None,
     config: ConfigOption = "server",
     seed: SeedOption = 0,
     resume: ResumeOption = False,
@@ -95,8 +92,7 @@ def train_interformer(
     if steps is not None:
         chosen = replace(chosen, steps=steps)
     torch.set_num_threads(1)
-    extra = " --predictor PREDICTOR_RUN" + (" --init FIRST_RUN" if initial else "")
-    command = _command("interformer", config, seed, steps, extra)
+    command = _command("interformer", config, seed, steps, " --predictor PREDICTOR_RUN")
     run = Run(out, chosen, seed, command, resume)
     training = join(
         [
@@ -110,8 +106,7 @@ def train_interformer(
             cut(cmu_split(data, "validation"), stride=5),
         ]
     )
-    start = load_classifier(initial) if initial else None
-    train_classifier(chosen, run, training, validation, load_predictor(predictor), start)
+    train_classifier(chosen, run, training, validation, load_predictor(predictor))
 
 
 export_app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")
@@ -178,7 +173,7 @@ def evaluate_gestures(
     bundle: BundleOption = CLASSIFIER,
     predictor: PredictorBundleOption = PREDICTOR,
     benchmark: Annotated[
-        Literal["synthetic", "sim2real"],
+        Literal["synthetic", "sim2real", "msrc12-stream"],
         typer.Option("--benchmark", help="Held-out virtual people, or real recordings."),
     ] = "synthetic",
     as_json: JsonOption = False,
@@ -188,6 +183,8 @@ def evaluate_gestures(
     classify, predict = _model(bundle), _model(predictor)
     if benchmark == "sim2real":
         _show(sim2real_report(classify.batched, predict.batched, data), as_json)
+    elif benchmark == "msrc12-stream":
+        _show(msrc12_stream_report(classify.batched, predict.batched, data), as_json)
     else:
         _show(classifier_report(classify, predict, data, cache), as_json)
 

@@ -20,7 +20,7 @@ from agent_server.cli.story import Story
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import NS_PER_S
-from agent_server.errors import AgentServerError
+from agent_server.errors import RecordingError
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.service.hub import Hub
@@ -85,7 +85,7 @@ async def _demo(
 
 def _raise_first(results: Iterable[BaseException | None]) -> None:
     for result in results:
-        if isinstance(result, AgentServerError):
+        if isinstance(result, Exception):
             raise result
 
 
@@ -98,6 +98,8 @@ async def _play(url: str, recording: Recording, rounds: int, renderer: TimedRend
     inputs = [
         event for event in recording.events() if isinstance(event, SkeletonFrame | AffectSample)
     ]
+    if not inputs:
+        raise RecordingError(f"{recording.path} holds nothing that a sensor sent: play another")
     length_ns = inputs[-1].originating_ns + PAUSE_NS
     async with join(url, SESSION, "sensor", hello=_hello()) as sensor:
         played = 0

@@ -10,6 +10,7 @@ import msgspec
 import typer
 
 from agent_server.config import Settings, load_settings
+from agent_server.errors import ConfigError
 
 ConfigOption = Annotated[
     Path | None, typer.Option("--config", "-c", help="TOML file with settings.")
@@ -23,11 +24,14 @@ def settings_with(config: Path | None, host: str | None, port: int | None) -> Se
     """Settings from a file, with the address overridden from the command line.
 
     Raises:
-        ConfigError: If the file is wrong.
+        ConfigError: If the file or the address is wrong.
     """
     settings = load_settings(config)
     changes = {name: value for name, value in (("host", host), ("port", port)) if value is not None}
-    server = msgspec.structs.replace(settings.server, **changes)
+    try:
+        server = msgspec.structs.replace(settings.server, **changes)
+    except ValueError as error:
+        raise ConfigError(str(error)) from error
     return msgspec.structs.replace(settings, server=server)
 
 

@@ -51,7 +51,10 @@ def replay(
     recording = open_recording(file)
     show = _print_line if as_json else Story(Console(highlight=False)).tell
     if to is not None:
-        run(_send(recording, to, _factor(speed or "1"), show))
+        factor = _factor(speed or "1")
+        if math.isinf(factor):
+            raise ConfigError("--speed max and --to do not go together: a live server would skip")
+        run(_send(recording, to, factor, show))
         return
     for decision in _paced(_decide(recording, load_settings(config)), _factor(speed or "max")):
         show(decision)

@@ -35,7 +35,7 @@ class GateVerdict:
         reason: Why, in a few words.
         valence: In [-10, 10], or None without a usable face.
         arousal: In [-10, 10], or None without a usable face.
-        age_ms: Time from the face to the end of the window, or None.
+        age_ms: Time from the face to the end of the window, negative for a newer face, or None.
     """
 
     mode: str

@@ -110,10 +110,11 @@ class ServerConnection:
         Returns:
             What it means, or None for a message that asks for nothing.
         """
-        if len(data) > self._max_message_bytes:
+        size = len(data) if isinstance(data, bytes) or data.isascii() else len(data.encode())
+        if size > self._max_message_bytes:
             return self.refuse(
                 InvalidInput(
-                    f"the message has {len(data)} bytes, the limit is {self._max_message_bytes}",
+                    f"the message has {size} bytes, the limit is {self._max_message_bytes}",
                     code="too_large",
                 )
             )

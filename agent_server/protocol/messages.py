@@ -62,7 +62,7 @@ class Hello(Message, frozen=True, tag="hello"):
     ``time`` is wall time in ISO 8601, for people.
     """
 
-    protocol: Annotated[str, Meta(pattern=r"^\d+\.\d+$")]
+    protocol: Annotated[str, Meta(pattern=r"^[0-9]{1,4}\.[0-9]{1,4}$")]
     client: Name
     client_version: Annotated[str, Meta(max_length=64)] = ""
     token: Annotated[str, Meta(max_length=4096)] | None = None

@@ -97,8 +97,17 @@ class Core:
         ]
 
     def feel(self, sample: AffectSample) -> None:
-        """Take an affect sample."""
+        """Take an affect sample.
+
+        Raises:
+            InvalidInput: If it is out of order.
+        """
         self._gate.push(sample)
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether anything falls due by the passing of time alone."""
+        return self.perception.is_following or self._room.deadline() is not None
 
     def tick(self, now_ns: int) -> tuple[list[Job], tuple[Command, ...]]:
         """Let time pass without input.

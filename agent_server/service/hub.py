@@ -26,6 +26,10 @@ class HubFull(Exception):
     """No further session is admitted."""
 
 
+class HubStopping(Exception):
+    """The server is stopping and admits nobody."""
+
+
 class Hub:
     """Opens sessions when their first client comes and closes them some time after the last left.
 
@@ -48,7 +52,6 @@ class Hub:
         self.settings = settings
         self.clock = clock
         self.models = models
-        self.epoch = secrets.token_hex(4)
         self._rules = rules
         self._open_journal = open_journal
         self._worker = InferenceWorker(models)
@@ -76,18 +79,23 @@ class Hub:
             try:
                 yield
             finally:
-                self._group = None
-                for ending in self._endings.values():
-                    ending.cancel()
-                for session in list(self._sessions):
-                    self._close(session, CLOSE_GOING_AWAY, "the server is stopping")
+                self.stop()
                 worker.cancel()
+
+    def stop(self) -> None:
+        """Send everybody away and admit nobody any more."""
+        self._group = None
+        for ending in self._endings.values():
+            ending.cancel()
+        for session in list(self._sessions):
+            self._close(session, CLOSE_GOING_AWAY, "the server is stopping")
 
     def join(self, session_id: str, client: Client) -> Session:
         """Bring a client into its session, which is opened if need be.
 
         Raises:
             HubFull: If there are too many sessions.
+            HubStopping: If the server is stopping.
             InvalidInput: If the session refuses the client.
         """
         session = self._sessions.get(session_id)
@@ -119,7 +127,7 @@ class Hub:
             server_version=__version__,
             session=session.id,
             role=role,
-            epoch=self.epoch,
+            epoch=session.epoch,
             sequence=session.sequence,
             heartbeat_s=server.heartbeat_s,
             labels=list(classifier.labels),
@@ -140,7 +148,9 @@ class Hub:
         )
 
     def _open(self, session_id: str) -> Session:
-        if self._group is None or len(self._sessions) >= self.settings.server.max_sessions:
+        if self._group is None:
+            raise HubStopping
+        if len(self._sessions) >= self.settings.server.max_sessions:
             raise HubFull
         session = Session(
             session_id,
@@ -148,7 +158,8 @@ class Hub:
             self._rules,
             self._worker,
             self.clock,
-            self.epoch,
+            # A session that is opened anew counts its commands anew.
+            secrets.token_hex(4),
             NoJournal() if self._open_journal is None else self._open_journal(session_id),
         )
         self._sessions[session_id] = session

@@ -9,7 +9,7 @@ from agent_server.domain.affect import AffectSample
 from agent_server.domain.command import Ack
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.skeleton import SkeletonFrame
-from agent_server.protocol.messages import CommandMessage, DecisionMessage
+from agent_server.protocol.messages import CommandMessage, DecisionMessage, SceneState
 from agent_server.recording.records import CoreEntry
 
 
@@ -44,6 +44,10 @@ class Journal(Protocol):
         """A command was issued."""
         ...
 
+    def append_scene(self, state: SceneState, stamp_ns: int) -> None:
+        """The room has changed."""
+        ...
+
     def flush(self) -> None:
         """Some time has passed; what was taken ought to be safe now."""
         ...
@@ -75,6 +79,9 @@ class NoJournal:
         """Do nothing."""
 
     def append_command(self, command: CommandMessage) -> None:
+        """Do nothing."""
+
+    def append_scene(self, state: SceneState, stamp_ns: int) -> None:
         """Do nothing."""
 
     def flush(self) -> None:

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from agent_server import __version__
@@ -11,7 +12,7 @@ from agent_server.domain.command import Ack
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import RecordingError
-from agent_server.protocol.messages import CommandMessage, DecisionMessage
+from agent_server.protocol.messages import CommandMessage, DecisionMessage, SceneState
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.records import CoreEntry
 from agent_server.recording.writer import RecordingWriter
@@ -63,6 +64,10 @@ class Recorder:
         """Write a command."""
         self._do(lambda writer: writer.append_command(command))
 
+    def append_scene(self, state: SceneState, stamp_ns: int) -> None:
+        """Write the room after a change."""
+        self._do(lambda writer: writer.append_scene(state, stamp_ns))
+
     def flush(self) -> None:
         """Hand what was written to the operating system."""
         self._do(RecordingWriter.flush)
@@ -78,8 +83,10 @@ class Recorder:
         try:
             write(self._writer)
         except RecordingError as error:
-            self._writer = None
             log.error("recording stopped, the session goes on: %s", error)
+            with suppress(RecordingError):
+                self._writer.close()
+            self._writer = None
 
 
 def recorder(folder: Path, session: str, models: Models, clock: Clock) -> Recorder:

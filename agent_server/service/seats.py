@@ -12,22 +12,24 @@ class Seats:
         self._senders: dict[str, Client] = {}
         self._renderer: Client | None = None
 
-    def claim_stream(self, kind: str, client: Client) -> None:
-        """Take the seat of the stream ``kind``, which its sender keeps.
+    def require_stream(self, kind: str, client: Client) -> None:
+        """Refuse a sensor that may not send the stream ``kind``; changes nothing.
 
         Raises:
-            InvalidInput: If another sensor has it and this one did not ask to take over.
+            InvalidInput: If another sensor has the seat and this one did not ask to take over.
         """
+        sender = self._senders.get(kind, client)
+        if sender is not client and not client.hello.take_over:
+            raise InvalidInput(
+                f"another sensor already sends this session's {kind}: say hello with "
+                "take_over = true to replace it",
+                code="stream_taken",
+            )
+
+    def take_stream(self, kind: str, client: Client) -> None:
+        """Give the seat of ``kind`` to a sensor that may have it and whose message was taken."""
         sender = self._senders.get(kind)
-        if sender is client:
-            return
-        if sender is not None:
-            if not client.hello.take_over:
-                raise InvalidInput(
-                    f"another sensor already sends this session's {kind}: say hello with "
-                    "take_over = true to replace it",
-                    code="stream_taken",
-                )
+        if sender is not None and sender is not client:
             sender.outbox.close(CLOSE_REPLACED, f"another sensor took over the {kind}")
         self._senders[kind] = client
 

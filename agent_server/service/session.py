@@ -53,7 +53,7 @@ class Session:
         rules: The room's rules.
         worker: The models.
         clock: Where to read the time.
-        epoch: Changes with every start of the server.
+        epoch: Changes with every opening of the session.
         journal: Where the session is recorded.
     """
 
@@ -71,13 +71,15 @@ class Session:
         self.audience = Audience()
         self.counters: Counter[str] = Counter()
         self.sequence = 0
-        self._epoch = epoch
+        self.epoch = epoch
         self._worker = worker
         self._clock = clock
         self._journal = journal
         self._core = Core(session, settings, rules, worker.models.hashes)
         self._timeline = Timeline()
         self._seats = Seats()
+        self._latest_command: m.CommandMessage | None = None
+        self._shown_scene = self.scene()
         self._jobs: deque[_Waiting] = deque()
         self._wake = asyncio.Event()
         self._is_inferring = False
@@ -90,10 +92,12 @@ class Session:
         Raises:
             InvalidInput: If it wants to act as the renderer and another one does.
         """
-        if client.role == "renderer" and not client.hello.mirror:
+        acts = client.role == "renderer" and not client.hello.mirror
+        if acts:
             self._seats.claim_room(client)
-            self._set_renderer(True)
         self.audience.clients.append(client)
+        if acts:
+            self._hand_over(client)
         if client.role == "sensor":
             self._update_face(is_open=True)
 
@@ -104,7 +108,9 @@ class Session:
         if client.role == "sensor":
             self._update_face(is_open=False)
         if self._seats.leave(client):
-            self._set_renderer(False)
+            now_ns = self._now()
+            self._journal.append_core(RendererChanged(now_ns, attached=False))
+            self._deliver(self._core.set_renderer(False, now_ns), now_ns)
 
     def scene(self) -> m.SceneState:
         """The room as it is."""
@@ -132,22 +138,27 @@ class Session:
     def _take_skeleton(
         self, client: Client, message: m.Skeleton | m.PackedSkeleton, arrival_ns: int
     ) -> None:
-        self._seats.claim_stream("body", client)
+        self._seats.require_stream("body", client)
         stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
         frame = convert.skeleton_from_message(message, stamp_ns)
+        shown = self._core.perception.latest
         jobs = self._core.observe(frame)
+        self._seats.take_stream("body", client)
+        self._timeline.accept(id(client), message.originating_ns, stamp_ns, arrival_ns)
         self.counters["frames"] += 1
         self._journal.append_skeleton(frame)
         self._enqueue(jobs, arrival_ns)
         latest = self._core.perception.latest
-        if latest is not None and self.audience.wants("pose"):
+        if latest is not None and latest is not shown and self.audience.wants("pose"):
             self.audience.show("pose", convert.pose_message(latest))
 
     def _take_affect(self, client: Client, message: m.Affect, arrival_ns: int) -> None:
-        self._seats.claim_stream("face", client)
+        self._seats.require_stream("face", client)
         stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
         sample = convert.affect_from_message(message, stamp_ns)
         self._core.feel(sample)
+        self._seats.take_stream("face", client)
+        self._timeline.accept(id(client), message.originating_ns, stamp_ns, arrival_ns)
         self.counters["affect_samples"] += 1
         self._journal.append_affect(sample)
         self.audience.show(
@@ -160,12 +171,11 @@ class Session:
         heard = self._core.acknowledge(ack)
         self.counters["acks" if heard.taken else "stale_acks"] += 1
         self._journal.append_ack(ack)
-        self._deliver(heard.commands)
+        self._deliver(heard.commands, ack.stamp_ns)
         self.audience.show(
             "ack",
             m.AckTelemetry(message.command_id, message.status, message.step, message.reason),
         )
-        self.audience.show_scene(self.scene())
 
     def _take_scene_event(self, client: Client, message: m.SceneEvent) -> None:
         self._seats.require_room(client)
@@ -173,8 +183,7 @@ class Session:
         commands = self._core.change_object(event)
         self.counters["scene_events"] += 1
         self._journal.append_scene_event(event)
-        self._deliver(commands)
-        self.audience.show_scene(self.scene())
+        self._deliver(commands, event.stamp_ns)
 
     # ------------------------------------------------------------------ work
 
@@ -204,7 +213,7 @@ class Session:
     def _lose_body(self, lost: BodyLost) -> None:
         self.counters["bodies_lost"] += 1
         self._journal.append_core(BodyGone(lost.stamp_ns, lost.body_id))
-        self._deliver(self._core.lose_body(lost))
+        self._deliver(self._core.lose_body(lost), lost.stamp_ns)
 
     async def _decide(self, pending: PendingWindow, arrival_ns: int) -> None:
         window = pending.window
@@ -224,7 +233,7 @@ class Session:
         result = self._core.decide(pending, inference.forecast, inference.classification)
         end_ns = self._clock.now_ns()
         # The command leaves first; what monitors and the recording get can wait.
-        self._deliver(result.commands)
+        self._deliver(result.commands, window.end_ns)
         self.counters["decisions"] += 1
         failure = inference.forecast.failure
         self.counters["predictor_failures"] += failure is not None
@@ -247,13 +256,14 @@ class Session:
             self._journal.flush()
             arrival_ns = self._clock.now_ns()
             is_busy = self._jobs or self._is_inferring
-            if is_busy or self._timeline.idle_ns(arrival_ns) < QUIET_NS:
+            is_quiet = self._timeline.idle_ns(arrival_ns) >= QUIET_NS
+            if is_busy or not is_quiet or not self._core.is_waiting:
                 continue
             now_ns = self._timeline.now(arrival_ns)
             self._journal.append_core(Tick(now_ns))
             jobs, commands = self._core.tick(now_ns)
             self._enqueue(jobs, arrival_ns)
-            self._deliver(commands)
+            self._deliver(commands, now_ns)
 
     def _enqueue(self, jobs: Iterable[Job], arrival_ns: int) -> None:
         for job in jobs:
@@ -272,17 +282,19 @@ class Session:
 
     # ------------------------------------------------------------------ output
 
-    def _deliver(self, commands: Iterable[Command]) -> None:
-        sent = False
+    def _deliver(self, commands: Iterable[Command], now_ns: int) -> None:
+        """Send commands, and the room where it has changed."""
         for command in commands:
-            sent = True
             self.sequence = command.sequence
             self.counters["commands"] += 1
-            message = convert.command_message(command, self._epoch)
+            self._latest_command = message = convert.command_message(command, self.epoch)
             self.audience.order(message)
             self._journal.append_command(message)
-        if sent:
-            self.audience.show_scene(self.scene())
+        scene = self.scene()
+        if scene != self._shown_scene:
+            self._shown_scene = scene
+            self.audience.show_scene(scene)
+            self._journal.append_scene(scene, now_ns)
 
     def _stats(self) -> m.StatsMessage:
         c = self.counters
@@ -315,10 +327,14 @@ class Session:
     def _now(self) -> int:
         return self._timeline.now(self._clock.now_ns())
 
-    def _set_renderer(self, attached: bool) -> None:
+    def _hand_over(self, renderer: Client) -> None:
+        """Let a renderer act for the room, from the command on that is being carried out."""
         now_ns = self._now()
-        self._journal.append_core(RendererChanged(now_ns, attached))
-        self._deliver(self._core.set_renderer(attached, now_ns))
+        latest = self._latest_command
+        if latest is not None and latest.id == self.scene().command_id:
+            renderer.outbox.post(latest)
+        self._journal.append_core(RendererChanged(now_ns, attached=True))
+        self._deliver(self._core.set_renderer(True, now_ns), now_ns)
 
     def _update_face(self, *, is_open: bool) -> None:
         """A face is expected unless every sensor that is there has none."""

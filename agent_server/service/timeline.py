@@ -5,6 +5,13 @@ decision log equal to a replayed one. Any other connection is mapped onto the ti
 its first stamp arrives. Between messages the session's time goes on with the server's clock.
 """
 
+from agent_server.domain.stamp import MAX_STAMP_NS, NS_PER_S
+from agent_server.errors import InvalidInput
+
+MAX_LEAD_NS = 60 * NS_PER_S
+"""How far a stamp may be ahead of the session's time: a recording may be sent faster than it was
+made, but a clock that is wrong by hours must not carry the session away."""
+
 
 class Timeline:
     """Maps stamps of several connections and the server's clock onto one line."""
@@ -15,23 +22,36 @@ class Timeline:
         self._last_arrival_ns = 0
 
     def map(self, connection: int, stamp_ns: int, arrival_ns: int) -> int:
-        """Bring a connection's stamp onto the session's time line.
+        """Where a connection's stamp lies on the session's time line; changes nothing.
 
         Args:
             connection: Identity of the connection.
             stamp_ns: Stamp on the sender's clock.
             arrival_ns: Server's monotonic clock at arrival.
+
+        Raises:
+            InvalidInput: If it lies before the session's start, or too far ahead.
         """
+        if self._last_ns is None:
+            return stamp_ns
+        now_ns = self.now(arrival_ns)
         offset = self._offsets.get(connection)
-        if offset is None:
-            is_first = self._last_ns is None
-            offset = 0 if is_first else self.now(arrival_ns) - stamp_ns
-            self._offsets[connection] = offset
-        mapped = stamp_ns + offset
-        if self._last_ns is None or mapped > self._last_ns:
-            self._last_ns = mapped
-            self._last_arrival_ns = arrival_ns
+        mapped = now_ns if offset is None else stamp_ns + offset
+        if not 0 <= mapped <= min(MAX_STAMP_NS, now_ns + MAX_LEAD_NS):
+            raise InvalidInput(
+                f"originating_ns is {stamp_ns}, {(mapped - now_ns) / NS_PER_S:.0f} s from the "
+                "session's time: send capture times of one monotonic clock, in nanoseconds",
+                field="originating_ns",
+                code="out_of_range",
+            )
         return mapped
+
+    def accept(self, connection: int, stamp_ns: int, mapped_ns: int, arrival_ns: int) -> None:
+        """Let time go on to a stamp that was mapped and whose message was taken."""
+        self._offsets.setdefault(connection, mapped_ns - stamp_ns)
+        if self._last_ns is None or mapped_ns > self._last_ns:
+            self._last_ns = mapped_ns
+            self._last_arrival_ns = arrival_ns
 
     def forget(self, connection: int) -> None:
         """A connection has closed."""

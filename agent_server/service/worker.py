@@ -5,6 +5,7 @@ is the bundle's to say (``batch_exact``), so that a decision never depends on wh
 """
 
 import asyncio
+import logging
 import time
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -16,6 +17,8 @@ from agent_server.domain.motion import Forecast, Window
 from agent_server.errors import InferenceError
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import predict
+
+log = logging.getLogger(__name__)
 
 MAX_BATCH = 16
 
@@ -68,6 +71,19 @@ def infer(models: Models, windows: Sequence[Window]) -> list[Inference]:
     ]
 
 
+def _infer_each(models: Models, windows: Sequence[Window]) -> list[Inference | InferenceError]:
+    """Run a batch; where it fails, window by window, so that one costs no other its result."""
+    try:
+        return list(infer(models, windows))
+    except Exception as error:  # whatever a model does, the thread serves on
+        if len(windows) > 1:
+            return [result for window in windows for result in _infer_each(models, [window])]
+        if isinstance(error, InferenceError):
+            return [error]
+        log.exception("a model failed in a way that it should not")
+        return [InferenceError(f"a model failed: {error!r}")]
+
+
 class InferenceWorker:
     """One thread that runs the models for everybody.
 
@@ -108,13 +124,11 @@ class InferenceWorker:
                     continue
                 self.largest_batch = max(self.largest_batch, len(batch))
                 windows = [window for window, _ in batch]
-                try:
-                    results = await loop.run_in_executor(thread, infer, self.models, windows)
-                except InferenceError as error:
-                    for _, future in batch:
-                        if not future.done():
-                            future.set_exception(InferenceError(str(error)))
-                    continue
+                results = await loop.run_in_executor(thread, _infer_each, self.models, windows)
                 for (_, future), result in zip(batch, results, strict=True):
-                    if not future.done():
+                    if future.done():
+                        continue
+                    if isinstance(result, InferenceError):
+                        future.set_exception(result)
+                    else:
                         future.set_result(result)

@@ -47,6 +47,8 @@ class Resampler:
         last, now = self._last, frame.stamp_ns
         if last is None:
             return self._restart(frame)
+        if frame.body_id != last.body_id:
+            return self._restart(frame)
         step = now - last.stamp_ns
         if step <= 0:
             raise InvalidInput(
@@ -55,8 +57,6 @@ class Resampler:
                 field="originating_ns",
                 code="out_of_order",
             )
-        if frame.body_id != last.body_id:
-            return self._restart(frame)
         if step > self._max_gap_ns:
             self.gaps += 1
             return self._restart(frame)

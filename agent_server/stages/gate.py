@@ -8,6 +8,7 @@ from agent_server.config import GateSettings
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.decision import GateVerdict
 from agent_server.domain.stamp import NS_PER_MS
+from agent_server.errors import InvalidInput
 
 
 class AffectGate:
@@ -33,15 +34,28 @@ class AffectGate:
         return self._settings.mode if self._has_face else "off"
 
     def push(self, sample: AffectSample) -> None:
-        """Take the next sample, in order of capture."""
+        """Take the next sample.
+
+        Raises:
+            InvalidInput: If it is not later than the last one; nothing has changed then.
+        """
+        latest = self._latest
+        if latest is not None and sample.originating_ns <= latest.originating_ns:
+            raise InvalidInput(
+                f"originating_ns is {sample.originating_ns}, and {latest.originating_ns} has been "
+                "seen: send each sample once, in the order of capture",
+                field="originating_ns",
+                code="out_of_order",
+            )
         self._latest = sample
         self._is_open = self._next(sample.valence, abs(sample.arousal))
 
     def verdict(self, now_ns: int) -> GateVerdict:
         """Say whether a discomfort gesture whose window ends at ``now_ns`` may pass."""
         settings, sample, mode = self._settings, self._latest, self.mode
-        age_ms = None if sample is None else max(0, now_ns - sample.originating_ns) / NS_PER_MS
-        is_fresh = age_ms is not None and age_ms <= settings.max_age_ms
+        age_ms = None if sample is None else (now_ns - sample.originating_ns) / NS_PER_MS
+        # A face from the future is as little this moment's as one from the past.
+        is_fresh = age_ms is not None and abs(age_ms) <= settings.max_age_ms
         if sample is None or not is_fresh:
             if mode == "off":
                 reason, is_open = "the gate is off", True

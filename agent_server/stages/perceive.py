@@ -72,6 +72,11 @@ class Perception:
         self.counters["gaps"] = self._resampler.gaps
         return found
 
+    @property
+    def is_following(self) -> bool:
+        """Whether somebody is followed who may leave."""
+        return self._lock.followed is not None
+
     def advance(self, now_ns: int) -> BodyLost | None:
         """Let time pass without frames."""
         return self._lock.advance(now_ns)

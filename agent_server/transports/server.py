@@ -21,6 +21,7 @@ from agent_server.service.recorder import recorder
 from agent_server.service.worker import Models
 from agent_server.transports.app import create_app
 
+GOODBYE_S = 0.1
 PREDICTOR = "ma_wgan_server"
 CLASSIFIER = "interformer_server"
 
@@ -96,6 +97,20 @@ def address(listener: socket.socket) -> str:
     return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
 
 
+class _Server(uvicorn.Server):
+    """Lets the hub say goodbye before uvicorn cuts the connections."""
+
+    def __init__(self, hub: Hub, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self._hub = hub
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Stop in order: first the sessions, then the connections."""
+        self._hub.stop()
+        await asyncio.sleep(GOODBYE_S)
+        await super().shutdown(sockets)
+
+
 @asynccontextmanager
 async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[asyncio.Task[None]]:
     """Serve while the context lasts; entered when connections are taken.
@@ -103,7 +118,8 @@ async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[asyncio.Ta
     Yields:
         A task that ends when the process is asked to stop by a signal.
     """
-    server = uvicorn.Server(
+    server = _Server(
+        hub,
         uvicorn.Config(
             create_app(hub, assets.page()),
             ws="websockets-sansio",
@@ -112,8 +128,8 @@ async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[asyncio.Ta
             ws_per_message_deflate=False,
             log_level="warning",
             lifespan="on",
-            timeout_graceful_shutdown=5,
-        )
+            timeout_graceful_shutdown=2,
+        ),
     )
     task = asyncio.create_task(server.serve(sockets=[listener]), name="uvicorn")
     try:

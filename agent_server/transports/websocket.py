@@ -3,6 +3,8 @@
 import asyncio
 import logging
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import TypeGuard, get_args
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
@@ -12,12 +14,13 @@ from agent_server.protocol import connection as c
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS, Codec, Wire
 from agent_server.service.audience import Client
-from agent_server.service.hub import Hub, HubFull
+from agent_server.service.hub import Hub, HubFull, HubStopping
 from agent_server.service.mailbox import Outbox, Overflow
 from agent_server.service.session import Session
 
 log = logging.getLogger(__name__)
 
+CLOSE_ABNORMAL = 1006
 FAREWELL_S = 2.0
 _SESSION_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}")
 
@@ -89,20 +92,38 @@ class _Link:
         return data
 
     async def send(self, message: m.Message) -> None:
+        """Send one message.
+
+        Raises:
+            WebSocketDisconnect: When the client has gone.
+        """
         data = self.codec.encode(message)
-        if isinstance(data, str):
-            await self._websocket.send_text(data)
-        else:
-            await self._websocket.send_bytes(data)
+        with _gone_as_disconnect():
+            if isinstance(data, str):
+                await self._websocket.send_text(data)
+            else:
+                await self._websocket.send_bytes(data)
 
     async def close(self, code: int, reason: str) -> None:
+        """Close the connection; one that is gone already is closed."""
         # A close frame carries at most 123 bytes of reason.
-        await self._websocket.close(code, reason.encode()[:123].decode(errors="ignore"))
+        with suppress(WebSocketDisconnect), _gone_as_disconnect():
+            await self._websocket.close(code, reason.encode()[:123].decode(errors="ignore"))
 
     async def dismiss(self, close_code: int, code: str, sentence: str) -> None:
         """Send a fatal error and close."""
-        await self.send(m.ErrorMessage(code, sentence, fatal=True))
-        await self.close(close_code, sentence)
+        with suppress(WebSocketDisconnect):
+            await self.send(m.ErrorMessage(code, sentence, fatal=True))
+            await self.close(close_code, sentence)
+
+
+@contextmanager
+def _gone_as_disconnect() -> Iterator[None]:
+    """A server that has closed the websocket by itself says so by a RuntimeError."""
+    try:
+        yield
+    except RuntimeError as error:
+        raise WebSocketDisconnect(CLOSE_ABNORMAL) from error
 
 
 class _Visit:
@@ -135,6 +156,7 @@ class _Visit:
                 # Whoever ends first ends the visit; the writer may still send what it has, but
                 # a client that takes nothing any more does not keep its place.
                 self._outbox.close(c.CLOSE_NORMAL, "")
+                reader.cancel()
                 await asyncio.wait((writer,), timeout=FAREWELL_S)
                 for task in tasks:
                     task.cancel()
@@ -156,8 +178,12 @@ class _Visit:
                     c.CLOSE_HELLO_TIMEOUT,
                 )
             )
-        while self._connection.state is c.State.OPEN and self._outbox.close_code is None:
-            await self._take(await self._link.receive())
+        while self._connection.state is c.State.OPEN:
+            data = await self._link.receive()
+            # Somebody may have taken this client's place while it was sending.
+            if self._outbox.close_code is not None:
+                return
+            await self._take(data)
 
     async def _take(self, data: Wire) -> None:
         event = self._connection.receive(data, self._hub.clock.now_ns())
@@ -170,7 +196,7 @@ class _Visit:
                 except InvalidInput as error:
                     self._refuse(self._connection.refuse(error))
             case c.Reply(message):
-                self._outbox.update("reply", message)
+                self._post(message)
             case c.Refused():
                 self._refuse(event)
             case c.Greeted(hello):
@@ -191,6 +217,14 @@ class _Visit:
                 )
             )
             return
+        except HubStopping:
+            self._refuse(
+                c.Refused(
+                    m.ErrorMessage("stopping", "the server is stopping", fatal=True),
+                    c.CLOSE_GOING_AWAY,
+                )
+            )
+            return
         except InvalidInput as error:
             self._refuse(
                 c.Refused(
@@ -206,13 +240,16 @@ class _Visit:
     def _refuse(self, refused: c.Refused) -> None:
         if self._session is not None:
             self._session.counters["rejected_messages"] += 1
-        try:
-            self._outbox.post(refused.error)
-        except Overflow:
-            self._outbox.close(c.CLOSE_TOO_SLOW, "too many answers wait; read faster")
+        self._post(refused.error)
         if refused.close_code is not None:
             self._outbox.close(refused.close_code, refused.error.message)
             self._connection.close()
+
+    def _post(self, message: m.Message) -> None:
+        try:
+            self._outbox.post(message)
+        except Overflow:
+            self._outbox.close(c.CLOSE_TOO_SLOW, "too many answers wait; read faster")
 
     async def _write(self) -> None:
         while True:

@@ -15,7 +15,7 @@ SYNTHETIC_SEED = 20
 TRAIN_PEOPLE = 60
 HELD_OUT: dict[str, tuple[int, int, int]] = {
     "validation": (100, 12, 400),
-    "test": (200, 12, 700),
+    "test": (300, 12, 700),
 }
 """Number of the first person, how many people, and how many takes; people of no other split."""
 CMU_VALIDATION_EVERY = 7

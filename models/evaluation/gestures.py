@@ -1,22 +1,21 @@
 """How well gestures are told apart, how early, and how rarely where there is none."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 import torch
 
+from agent_server.config import DecideSettings, WindowSettings
 from agent_server.domain.arrays import Float32
-from agent_server.domain.gesture import GESTURES, IDLE
-from agent_server.domain.motion import RATE_HZ, SEEN_FRAMES
+from agent_server.domain.gesture import GESTURES, IDLE, Classification
+from agent_server.domain.motion import FRAME_NS, RATE_HZ, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
+from agent_server.stages.decide import GestureTracker, Phase
 from models.data.windows import AMBIGUOUS, Recording, WindowSet
 
-HOP_FRAMES = 5
-STREAK = 3
-THRESHOLD = 0.6
-COOL_DOWN_WINDOWS = 10
-"""A decision is a gesture above 0.6 in three windows in a row, 0.2 s apart; then 2 s of rest."""
+HOP_FRAMES = WindowSettings().hop
+THRESHOLD = DecideSettings().enter
 
 Predict = Callable[[Float32], Float32]
 """seen (B, 25, 9, 3) -> future (B, 50, 9, 3)."""
@@ -83,22 +82,24 @@ def sliding_seen(positions: Float32) -> tuple[Float32, np.ndarray]:
     return windows - windows[:, -1:, CoreJoint.NAVEL : CoreJoint.NAVEL + 1], last
 
 
-def decisions(probabilities: Float32) -> list[tuple[int, str]]:
-    """Windows in which a gesture is decided on, and which."""
+def decisions(
+    probabilities: Float32, ends_ns: Sequence[int] | None = None
+) -> list[tuple[int, str]]:
+    """Windows in which the live decision stage decides on a gesture, and which.
+
+    Args:
+        probabilities: Shape (N, C), a row a window.
+        ends_ns: When each window ends; None stands for one every 0.2 s.
+    """
+    if ends_ns is None:
+        ends_ns = range(0, len(probabilities) * HOP_FRAMES * FRAME_NS, HOP_FRAMES * FRAME_NS)
+    tracker = GestureTracker(DecideSettings())
     found: list[tuple[int, str]] = []
-    streak, current, resting = 0, IDLE, 0
-    for window, row in enumerate(probabilities):
-        best = GESTURES[int(row.argmax())]
-        streak = streak + 1 if best == current else 1
-        current = best
-        if resting:
-            resting -= 1
-        # The streak counts windows above the threshold only.
-        if row.max() <= THRESHOLD:
-            streak = 0
-        if best != IDLE and streak >= STREAK and not resting:
-            found.append((window, best))
-            resting = COOL_DOWN_WINDOWS
+    for window, (row, end_ns) in enumerate(zip(probabilities, ends_ns, strict=True)):
+        tracking = tracker.push(Classification(GESTURES, row), end_ns)
+        if tracking.phase is Phase.ACTIVE:
+            found.append((window, tracking.gesture))
+            tracker.mark_handled()
     return found
 
 

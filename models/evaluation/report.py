@@ -25,7 +25,7 @@ from models.evaluation.prediction import evaluate_prediction
 from models.export.session import OnnxModel
 
 IDLE_MINUTES = 40
-IDLE_SEED = 900
+IDLE_SEED = 901
 STRIDE = 5
 
 

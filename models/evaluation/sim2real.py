@@ -77,7 +77,7 @@ def msrc12_windows(data: Path) -> tuple[Float32, np.ndarray]:
         InvalidInput: If the set is not there.
     """
     windows, labels = [], []
-    for path in _files(data / "msrc12", "*.csv*"):
+    for path in source_files(data / "msrc12", "*.csv*"):
         recording = read_msrc12(path)
         if not any(mark.tag in MSRC12 for mark in recording.marks):
             continue
@@ -100,7 +100,7 @@ def utd_mhad_streams(data: Path) -> Iterator[tuple[str, Float32]]:
     Raises:
         InvalidInput: If the set is not there.
     """
-    for path in _files(data / "utd_mhad", "*.mat"):
+    for path in source_files(data / "utd_mhad", "*.mat"):
         action = re.match(r"a\d+", path.name)
         label = UTD_MHAD.get(action[0]) if action else None
         if label is not None:
@@ -151,7 +151,12 @@ def _counts(names: list[str]) -> dict[str, int]:
     return {name: names.count(name) for name in GESTURES if name in names}
 
 
-def _files(folder: Path, pattern: str) -> list[Path]:
+def source_files(folder: Path, pattern: str) -> list[Path]:
+    """Files of a set, sorted.
+
+    Raises:
+        InvalidInput: If there is none.
+    """
     files = sorted(folder.glob(pattern))
     if not files:
         raise InvalidInput(f"{folder} holds no {pattern}: give the folder of the sets as --data")

@@ -175,7 +175,6 @@ def train(
     training: WindowSet,
     validation: WindowSet,
     predictor: nn.Module,
-    initial: Classifier | None = None,
 ) -> None:
     """Train a classifier; the checkpoint with the lowest balanced validation loss is the best.
 
@@ -185,7 +184,6 @@ def train(
         training: Windows with labels; ambiguous ones are left out.
         validation: Windows of other people.
         predictor: Frozen.
-        initial: Weights to start from; None starts from random ones.
     """
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     generator = torch.Generator().manual_seed(run.info["seed"])
@@ -194,9 +192,6 @@ def train(
     pools = Pools.of(training)
     validation = validation.take((validation.labels != AMBIGUOUS).nonzero()[:, 0])
     trainer = Trainer(config, device)
-    if initial is not None:
-        trainer.network.load_state_dict(initial.state_dict())
-        trainer.ema.network.load_state_dict(initial.state_dict())
     first, best, spent = 0, float("inf"), 0.0
     state = run.resume()
     if state is not None:

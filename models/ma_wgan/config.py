@@ -67,7 +67,7 @@ class TrainConfig:
     """
 
     network: NetworkConfig = NetworkConfig()
-    steps: int = 8_000
+    steps: int = 4_000
     batch: int = 96
     learning_rate: float = 1e-3
     critic_rate: float = 2e-4

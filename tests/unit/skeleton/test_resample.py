@@ -79,7 +79,7 @@ def test_another_body_starts_a_new_grid_and_is_no_gap() -> None:
     assert resampler.gaps == 0
 
 
-@pytest.mark.parametrize(("ms", "body_id"), [(100, 1), (99, 1), (0, 1), (99, 2)])
+@pytest.mark.parametrize(("ms", "body_id"), [(100, 1), (99, 1), (0, 1)])
 def test_time_must_go_on(ms: float, body_id: int) -> None:
     resampler = Resampler()
     resampler.push(at(67, 0.0))
@@ -98,3 +98,11 @@ def test_the_grid_does_not_drift() -> None:
     given = [frame for index in range(3000) for frame in resampler.push(at(index * 1000 / 30, 0.0))]
     assert [frame.stamp_ns for frame in given] == [index * FRAME_NS for index in range(len(given))]
     assert len(given) == 2500
+
+
+def test_another_body_starts_a_grid_of_its_own_whatever_its_stamps() -> None:
+    resampler = Resampler()
+    resampler.push(at(100, 0.0))
+    restarted = resampler.push(at(60, 1.0, body_id=2))
+    assert [(frame.stamp_ns, frame.body_id) for frame in restarted] == [(60_000_000, 2)]
+    assert resampler.gaps == 0
