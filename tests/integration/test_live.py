@@ -14,6 +14,7 @@ from agent_server.protocol.codec import CODECS
 from agent_server.protocol.connection import (
     CLOSE_BAD_HELLO,
     CLOSE_FULL,
+    CLOSE_GOING_AWAY,
     CLOSE_HELLO_TIMEOUT,
     CLOSE_REPLACED,
     CLOSE_TOO_MANY_ERRORS,
@@ -323,3 +324,31 @@ async def test_a_renderer_without_a_picture_carries_commands_out_and_restores_th
         while (await next_of(monitor, m.SceneState)).objects["hifi"] != "high":
             pass
         running.cancel()
+
+
+async def test_every_ping_is_answered():
+    async with live() as server, server.join("monitor") as monitor:
+        for sent_ns in range(40):
+            await monitor.send(m.Ping(sent_ns))
+        answered = [(await next_of(monitor, m.Pong)).sent_ns for _ in range(40)]
+        assert answered == list(range(40))
+
+
+async def test_a_server_that_stops_says_goodbye():
+    async with live() as server, server.join("sensor") as sensor:
+        server.hub.stop()
+        assert [message async for message in sensor] == []
+        assert sensor._socket.close_code == CLOSE_GOING_AWAY
+        with pytest.raises(ConnectionFailed, match="stopping"):
+            async with server.join("sensor"):
+                pass
+
+
+async def test_a_session_that_is_opened_anew_has_another_epoch():
+    settings = Settings(server=ServerSettings(session_linger_s=0.05))
+    async with live(settings=settings) as server:
+        async with server.join("sensor") as sensor:
+            first = sensor.welcome.epoch
+        await asyncio.sleep(0.3)
+        async with server.join("sensor") as sensor:
+            assert sensor.welcome.epoch != first

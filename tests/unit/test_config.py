@@ -44,6 +44,7 @@ def test_the_thesis_grid_has_no_overlap(tmp_path):
         ("[decide]\nenter_windows = 0\n", "enter_windows"),
         ("[decide]\nleave_windows = 0\n", "leave_windows"),
         ("[decide]\ncooldown_s = -1.0\n", "cooldown_s"),
+        ("[decide]\ncooldown_s = inf\n", "cooldown_s"),
         ("[server]\nport = 70000\n", "port"),
         ("[server]\nmax_message_bytes = 10\n", "max_message_bytes"),
         ("[server]\nmax_sessions = 0\n", "max_sessions"),

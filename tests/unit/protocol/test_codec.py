@@ -73,6 +73,8 @@ def test_unknown_fields_are_ignored():
         ("not json", None, "malformed"),
         ("[" * 100_000, None, None),
         ('{"type":"hello","protocol":"one","client":"x"}', "protocol", None),
+        ('{"type":"hello","protocol":"%s.0","client":"x"}' % ("9" * 5000), "protocol", None),
+        ('{"type":"hello","protocol":"\u0661.0","client":"x"}', "protocol", None),
     ],
 )
 def test_what_cannot_be_read_is_refused_with_its_field(text, field, code):

@@ -80,6 +80,42 @@ async def test_a_classifier_that_fails_is_reported_and_the_worker_goes_on():
         assert (await worker.infer(window(1))).classification.best == "idle"
 
 
+async def test_a_model_that_breaks_in_an_unknown_way_does_not_end_the_worker(caplog):
+    class Exploding(Broken):
+        def classify(self, motion):
+            if self.broken:
+                raise MemoryError("no room")
+            return super().classify(motion)
+
+    classifier = Exploding()
+    async with running(Models(LastFramePredictor(), classifier)) as worker:
+        with pytest.raises(InferenceError, match="no room"):
+            await worker.infer(window(0))
+        classifier.broken = False
+        assert (await worker.infer(window(1))).classification.best == "idle"
+    assert "a model failed" in caplog.text
+
+
+async def test_a_window_that_the_classifier_fails_on_costs_no_other_its_decision():
+    class Picky(RuleClassifier):
+        def classify(self, motion):
+            if (motion[:, 0, 0, 0] > 2).any():
+                raise InferenceError("no such motion")
+            return super().classify(motion)
+
+    predictor = Blocking()
+    odd = window(1)
+    odd.positions[0, 0, 0] = 3.0
+    async with running(Models(predictor, Picky(lambda _: "idle"))) as worker:
+        first = asyncio.create_task(worker.infer(window(0)))
+        await asyncio.sleep(0.05)
+        rest = [asyncio.create_task(worker.infer(w)) for w in (window(1), odd, window(2))]
+        await asyncio.sleep(0)
+        predictor.may_go.set()
+        results = await asyncio.gather(first, *rest, return_exceptions=True)
+    assert [isinstance(result, InferenceError) for result in results] == [False, False, True, False]
+
+
 async def test_a_session_that_has_gone_costs_nothing():
     predictor = Blocking()
     async with running(Models(predictor, fake_models().classifier)) as worker:

@@ -64,6 +64,13 @@ def test_no_face_and_a_stale_face_close_a_required_gate():
     assert stale.age_ms == 1001.0
 
 
+def test_a_face_from_the_future_is_not_used():
+    gate = AffectGate(GateSettings())
+    gate.push(AffectSample(10 * S, -6.0, 5.0))
+    assert gate.verdict(9 * S).is_open
+    assert not gate.verdict(8 * S).is_open
+
+
 def test_an_optional_gate_opens_without_a_face_but_heeds_one():
     gate = AffectGate(GateSettings(mode="optional"))
     assert gate.verdict(0).is_open
