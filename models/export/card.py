@@ -3,9 +3,12 @@
 from collections.abc import Mapping
 from typing import Any
 
+from agent_server.config import DecideSettings
 from agent_server.domain.gesture import GESTURES
 from agent_server.inference.manifest import Manifest
 from models.evaluation.prediction import HORIZONS_MS
+
+_DECIDE = DecideSettings()
 
 SETS = {
     "synthetic": "synthetic people that no split of the training has seen",
@@ -78,7 +81,8 @@ def classifier_card(manifest: Manifest) -> str:
         + ", ".join(f"{name} {_percent(value)}" for name, value in recall.items())
         + ".",
         "",
-        "Decisions (three windows in a row above 0.6, 0.2 s apart):",
+        f"Decisions ({_DECIDE.enter_windows} windows in a row at {_DECIDE.enter:g} or more, "
+        "0.2 s apart):",
         "",
         *_decision_lines(results["decisions"]),
         "",

@@ -49,8 +49,10 @@ def test_a_decision_takes_three_sure_windows_in_a_row() -> None:
     assert decisions(rows(*[IDLE] * 5)) == []
 
 
-def test_after_a_decision_there_is_a_rest() -> None:
-    assert [w for w, _ in decisions(rows(*["hot"] * 20))] == [2, 12]
+def test_one_gesture_is_decided_on_once() -> None:
+    assert [w for w, _ in decisions(rows(*["hot"] * 20))] == [2]
+    again = decisions(rows(*["hot"] * 5, *[IDLE] * 15, *["hot"] * 5))
+    assert [w for w, _ in again] == [2, 22]
 
 
 def test_scores_count_only_classes_that_occur() -> None:
