@@ -1,6 +1,7 @@
 """``agent-server replay``."""
 
 import asyncio
+import logging
 import math
 import sys
 import time
@@ -29,6 +30,8 @@ from agent_server.service.core import Core
 from agent_server.service.replay import replay as replay_recording
 from agent_server.transports.client import Client, join, send_paced
 from agent_server.transports.server import load_models, load_room
+
+log = logging.getLogger(__name__)
 
 SETTLE_S = 1.0
 """After the last frame was sent, decisions may still come for this long."""
@@ -76,6 +79,10 @@ def _print_line(decision: m.DecisionBody) -> None:
 
 def _decide(recording: Recording, settings: Settings) -> Iterator[m.DecisionBody]:
     models = load_models()
+    recorded = recording.metadata.bundles
+    for model in (models.predictor, models.classifier):
+        if recorded.get(model.name, model.sha256) != model.sha256:
+            log.warning("recorded with another %s: decisions may differ", model.name)
     core = Core(recording.metadata.session, settings, load_room(settings, models), models.hashes)
     return map(decision_body, replay_recording(recording, core, models))
 

@@ -48,10 +48,6 @@ class Journal(Protocol):
         """The room has changed."""
         ...
 
-    def flush(self) -> None:
-        """Some time has passed; what was taken ought to be safe now."""
-        ...
-
     def close(self) -> None:
         """The session is over."""
         ...
@@ -82,9 +78,6 @@ class NoJournal:
         """Do nothing."""
 
     def append_scene(self, state: SceneState, stamp_ns: int) -> None:
-        """Do nothing."""
-
-    def flush(self) -> None:
         """Do nothing."""
 
     def close(self) -> None:

@@ -2,8 +2,9 @@
 
 import logging
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
+from queue import Empty, Full, Queue
+from threading import Thread
 
 from agent_server import __version__
 from agent_server.clock import Clock
@@ -20,9 +21,16 @@ from agent_server.service.worker import Models
 
 log = logging.getLogger(__name__)
 
+MAX_WAITING = 20_000
+"""Records that may wait for the disk: some minutes of a session."""
+FLUSH_S = 0.5
+CLOSE_S = 5.0
+
 
 class Recorder:
-    """A journal on disk. When the disk fails it says so once and takes no more.
+    """A journal on disk, written by a thread of its own, so that a slow disk stalls nobody.
+
+    When the disk fails, or is so slow that too much waits, it says so once and takes no more.
 
     Args:
         path: File to create.
@@ -30,11 +38,10 @@ class Recorder:
     """
 
     def __init__(self, path: Path, metadata: RecordingMetadata) -> None:
-        self._writer: RecordingWriter | None = None
-        try:
-            self._writer = RecordingWriter(path, metadata)
-        except RecordingError as error:
-            log.error("nothing is recorded, the session goes on: %s", error)
+        self._waiting: Queue[_Write | None] = Queue(MAX_WAITING)
+        self._has_failed = False
+        self._thread = Thread(target=self._run, args=(path, metadata), name=path.name, daemon=True)
+        self._thread.start()
 
     def append_skeleton(self, frame: SkeletonFrame) -> None:
         """Write a frame."""
@@ -68,25 +75,42 @@ class Recorder:
         """Write the room after a change."""
         self._do(lambda writer: writer.append_scene(state, stamp_ns))
 
-    def flush(self) -> None:
-        """Hand what was written to the operating system."""
-        self._do(RecordingWriter.flush)
-
     def close(self) -> None:
-        """Finish the file."""
-        self._do(RecordingWriter.close)
-        self._writer = None
+        """Finish the file; a disk that hangs is not waited for long."""
+        self._do(None)
+        self._thread.join(CLOSE_S)
 
-    def _do(self, write: Callable[[RecordingWriter], None]) -> None:
-        if self._writer is None:
+    def _do(self, write: "_Write | None") -> None:
+        if self._has_failed:
             return
         try:
-            write(self._writer)
+            self._waiting.put_nowait(write)
+        except Full:
+            self._has_failed = True
+            log.error("recording stopped, the session goes on: the disk is too slow")
+
+    def _run(self, path: Path, metadata: RecordingMetadata) -> None:
+        try:
+            with RecordingWriter(path, metadata) as writer:
+                self._write_all(writer)
         except RecordingError as error:
+            self._has_failed = True
             log.error("recording stopped, the session goes on: %s", error)
-            with suppress(RecordingError):
-                self._writer.close()
-            self._writer = None
+
+    def _write_all(self, writer: RecordingWriter) -> None:
+        """Write what comes until there is no more, and flush when nothing comes for a while."""
+        while not (self._has_failed and self._waiting.empty()):
+            try:
+                write = self._waiting.get(timeout=FLUSH_S)
+            except Empty:
+                writer.flush()
+                continue
+            if write is None:
+                return
+            write(writer)
+
+
+_Write = Callable[[RecordingWriter], None]
 
 
 def recorder(folder: Path, session: str, models: Models, clock: Clock) -> Recorder:

@@ -253,7 +253,6 @@ class Session:
     async def _tick(self) -> None:
         while True:
             await asyncio.sleep(TICK_S)
-            self._journal.flush()
             arrival_ns = self._clock.now_ns()
             is_busy = self._jobs or self._is_inferring
             is_quiet = self._timeline.idle_ns(arrival_ns) >= QUIET_NS
