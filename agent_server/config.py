@@ -116,14 +116,16 @@ class DecideSettings(_Section, frozen=True):
     """How probabilities become one decision a gesture.
 
     Attributes:
-        enter: A gesture is a candidate from this probability on.
+        enter: A gesture is a candidate from this probability on ...
+        enter_ungated: ... or from this one on, if no face has to confirm it.
         leave: A gesture that is going on ends below this probability.
         enter_windows: Windows in a row that a candidate needs.
         leave_windows: Windows in a row below ``leave`` that end a gesture.
         cooldown_s: The same gesture cannot start again for this long after its end.
     """
 
-    enter: float = 0.6
+    enter: float = 0.65
+    enter_ungated: float = 0.85
     leave: float = 0.4
     enter_windows: int = 3
     leave_windows: int = 2
@@ -131,7 +133,10 @@ class DecideSettings(_Section, frozen=True):
 
     def __post_init__(self) -> None:
         _check_finite(self)
-        _require(0 < self.leave <= self.enter < 1, "0 < leave <= enter < 1 must hold")
+        _require(
+            0 < self.leave <= self.enter <= self.enter_ungated < 1,
+            "0 < leave <= enter <= enter_ungated < 1 must hold",
+        )
         _require(self.enter_windows >= 1, "enter_windows must be at least 1")
         _require(self.leave_windows >= 1, "leave_windows must be at least 1")
         _require(self.cooldown_s >= 0, "cooldown_s must not be negative")

@@ -74,7 +74,7 @@ class Core:
         self._gate = AffectGate(settings.gate)
         self.perception = Perception(settings.window, settings.subject)
         self._tracker = GestureTracker(
-            settings.decide, 1 if settings.window.mode == "thesis" else None
+            settings.decide, rules.ungated, 1 if settings.window.mode == "thesis" else None
         )
         self._room = Room(rules, session)
         self._next_decision = 0

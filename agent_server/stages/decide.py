@@ -1,5 +1,6 @@
 """From probabilities to gestures: hysteresis and cool-down, one decision a gesture."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from enum import Enum, auto
 
@@ -45,11 +46,18 @@ class GestureTracker:
 
     Args:
         settings: Thresholds and times.
+        ungated: Gestures that no face has to confirm; they must be surer.
         enter_windows: Overrides the setting; the thesis's grid decides on one window.
     """
 
-    def __init__(self, settings: DecideSettings, enter_windows: int | None = None) -> None:
+    def __init__(
+        self,
+        settings: DecideSettings,
+        ungated: Collection[str] = (),
+        enter_windows: int | None = None,
+    ) -> None:
         self._settings = settings
+        self._ungated = frozenset(ungated)
         self._enter_windows = enter_windows or settings.enter_windows
         self._leave_windows = min(settings.leave_windows, self._enter_windows)
         self._cooldown_ns = to_ns(settings.cooldown_s)
@@ -94,7 +102,9 @@ class GestureTracker:
 
     def _candidate_of(self, classification: Classification) -> str | None:
         best = classification.best
-        if best == IDLE or float(classification.probabilities.max()) < self._settings.enter:
+        settings = self._settings
+        enter = settings.enter_ungated if best in self._ungated else settings.enter
+        if best == IDLE or float(classification.probabilities.max()) < enter:
             return None
         return best
 

@@ -8,7 +8,7 @@ import torch
 
 from agent_server.config import DecideSettings, WindowSettings
 from agent_server.domain.arrays import Float32
-from agent_server.domain.gesture import GESTURES, IDLE, Classification
+from agent_server.domain.gesture import GESTURES, HELLO, IDLE, Classification
 from agent_server.domain.motion import FRAME_NS, RATE_HZ, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.stages.decide import GestureTracker, Phase
@@ -93,7 +93,7 @@ def decisions(
     """
     if ends_ns is None:
         ends_ns = range(0, len(probabilities) * HOP_FRAMES * FRAME_NS, HOP_FRAMES * FRAME_NS)
-    tracker = GestureTracker(DecideSettings())
+    tracker = GestureTracker(DecideSettings(), {HELLO})
     found: list[tuple[int, str]] = []
     for window, (row, end_ns) in enumerate(zip(probabilities, ends_ns, strict=True)):
         tracking = tracker.push(Classification(GESTURES, row), end_ns)

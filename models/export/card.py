@@ -81,8 +81,8 @@ def classifier_card(manifest: Manifest) -> str:
         + ", ".join(f"{name} {_percent(value)}" for name, value in recall.items())
         + ".",
         "",
-        f"Decisions ({_DECIDE.enter_windows} windows in a row at {_DECIDE.enter:g} or more, "
-        "0.2 s apart):",
+        f"Decisions ({_DECIDE.enter_windows} windows in a row, 0.2 s apart, at {_DECIDE.enter:g} "
+        f"or more, hello at {_DECIDE.enter_ungated:g}):",
         "",
         *_decision_lines(results["decisions"]),
         "",

@@ -41,6 +41,7 @@ def test_the_thesis_grid_has_no_overlap(tmp_path):
         ("[gate]\nmax_age_ms = 0\n", "max_age_ms"),
         ("[gate]\nmode = 'sometimes'\n", "sometimes"),
         ("[decide]\nenter = 0.2\n", "enter"),
+        ("[decide]\nenter_ungated = 0.5\n", "enter_ungated"),
         ("[decide]\nenter_windows = 0\n", "enter_windows"),
         ("[decide]\nleave_windows = 0\n", "leave_windows"),
         ("[decide]\ncooldown_s = -1.0\n", "cooldown_s"),

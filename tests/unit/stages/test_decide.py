@@ -20,7 +20,7 @@ class Stream:
     """A tracker that is fed window after window."""
 
     def __init__(self, settings=None, enter_windows=None):
-        self.tracker = GestureTracker(settings or DecideSettings(), enter_windows)
+        self.tracker = GestureTracker(settings or DecideSettings(), {"hello"}, enter_windows)
         self.now = 0
 
     def push(self, label, level=0.9, count=1):
@@ -44,7 +44,13 @@ def test_an_interrupted_streak_starts_again():
 
 
 def test_what_is_not_probable_enough_never_starts():
-    assert Stream().push("loud", level=0.59, count=10).phase is Phase.UNSURE
+    assert Stream().push("loud", level=0.64, count=10).phase is Phase.UNSURE
+
+
+def test_what_no_face_confirms_must_be_surer():
+    assert Stream().push("hello", level=0.8, count=10).phase is Phase.UNSURE
+    assert Stream().push("loud", level=0.8, count=10).phase is Phase.ACTIVE
+    assert Stream().push("hello", level=0.9, count=10).phase is Phase.ACTIVE
 
 
 def test_idle_is_never_a_gesture():
