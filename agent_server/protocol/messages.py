@@ -140,9 +140,9 @@ class GateLevels(msgspec.Struct, frozen=True):
 
 
 class DecideLevels(msgspec.Struct, frozen=True):
-    """Probabilities at which a gesture starts and ends, so that a client can draw them."""
+    """Probabilities at which gestures start, by label, and end, so that a client can draw them."""
 
-    enter: float
+    enter: dict[str, float]
     leave: float
 
 

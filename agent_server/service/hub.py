@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager
 from agent_server import __version__
 from agent_server.clock import Clock
 from agent_server.config import Settings
+from agent_server.domain.gesture import IDLE
 from agent_server.protocol import messages as m
 from agent_server.protocol.connection import CLOSE_GOING_AWAY
 from agent_server.scene.rulebook import Rules
@@ -119,7 +120,7 @@ class Hub:
 
     def welcome(self, session: Session, role: m.Role) -> m.Welcome:
         """What a client is told when it may stay."""
-        gate, server = self.settings.gate, self.settings.server
+        gate, server, decide = self.settings.gate, self.settings.server, self.settings.decide
         predictor, classifier = self.models.predictor, self.models.classifier
         return m.Welcome(
             protocol=m.PROTOCOL,
@@ -138,7 +139,14 @@ class Hub:
                 gate.leave_valence,
                 gate.leave_arousal,
             ),
-            decide=m.DecideLevels(self.settings.decide.enter, self.settings.decide.leave),
+            decide=m.DecideLevels(
+                {
+                    label: decide.enter if self._rules.is_gated(label) else decide.enter_ungated
+                    for label in classifier.labels
+                    if label != IDLE
+                },
+                decide.leave,
+            ),
             limits=m.Limits(server.max_message_bytes, server.max_errors),
             models=[
                 m.ModelInfo(predictor.name, "predict", predictor.sha256),

@@ -81,6 +81,11 @@ async def test_the_page_shows_what_the_agent_makes_of_a_person(tmp_path):
             assert state["forecastFrames"] == 50
             assert state["poseNs"] > 4e9
             assert state["lastDecision"]["id"].startswith("cold/")
+            # A mark a gesture, none for idle; hello, which no face confirms, has the highest.
+            marks = await page.locator(".tick").evaluate_all(
+                "ticks => ticks.map(t => t.style.left)"
+            )
+            assert marks == ["65%"] * 5 + ["85%"]
             picture = await page.screenshot(path=tmp_path / "page.png")
             assert len(picture) > 20_000
             state = await until(page, lambda s: s["objects"]["window"] == "closed")

@@ -51,7 +51,7 @@ export interface GateLevels {
 
 /** Probability from which a gesture is a candidate, and below which one that goes on ends. */
 export interface DecideLevels {
-  readonly enter: number;
+  readonly enter: Readonly<Record<string, number>>;
   readonly leave: number;
 }
 

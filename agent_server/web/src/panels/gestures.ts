@@ -1,8 +1,11 @@
-/** One bar a class: its probability, the threshold, and which gesture is held to be going on. */
+/** One bar a class: its probability, its threshold, and which gesture is held to be going on. */
 
 import type { Decision } from "../protocol.ts";
 import { sentenceCase } from "../state/words.ts";
 import { h, setAttribute, setState, setText } from "../ui/dom.ts";
+
+/** Probability from which each gesture counts; a label without one never does. */
+export type Thresholds = Readonly<Record<string, number>>;
 
 interface Bar {
   readonly root: HTMLElement;
@@ -17,14 +20,14 @@ export class Bars {
 
   render(
     labels: readonly string[],
-    threshold: number | null,
+    thresholds: Thresholds | null,
     probabilities: Readonly<Record<string, number>> | null,
     gesture: string | null,
   ): void {
-    const shape = JSON.stringify([labels, threshold]);
+    const shape = JSON.stringify([labels, thresholds]);
     if (shape !== this.#shape) {
       this.#shape = shape;
-      this.#build(labels, threshold);
+      this.#build(labels, thresholds);
     }
     for (const [label, bar] of this.#bars) {
       const share = probabilities?.[label] ?? 0;
@@ -32,18 +35,20 @@ export class Bars {
       bar.fill.style.transform = `scaleX(${share.toFixed(3)})`;
       setText(bar.value, percent);
       setState(bar.root, "now", label !== gesture ? "no" : label === "idle" ? "idle" : "yes");
-      setState(bar.root, "over", `${threshold !== null && share >= threshold}`);
+      const threshold = thresholds?.[label];
+      setState(bar.root, "over", `${threshold !== undefined && share >= threshold}`);
       setAttribute(bar.root, "aria-valuenow", (share * 100).toFixed(0));
     }
   }
 
-  #build(labels: readonly string[], threshold: number | null): void {
+  #build(labels: readonly string[], thresholds: Thresholds | null): void {
     this.#bars.clear();
     this.root.replaceChildren();
     for (const label of labels) {
       const fill = h("span", { class: "fill" });
       const track = h("span", { class: "track" }, fill);
-      if (threshold !== null) {
+      const threshold = thresholds?.[label];
+      if (threshold !== undefined) {
         const tick = h("span", { class: "tick" });
         tick.style.left = `${threshold * 100}%`;
         track.append(tick);
@@ -77,14 +82,13 @@ export class GesturePanel {
     root.append(this.#bars.root);
   }
 
-  render(labels: readonly string[], threshold: number | null, decision: Decision | null): void {
+  render(labels: readonly string[], thresholds: Thresholds | null, decision: Decision | null): void {
     this.#bars.render(
       labels,
-      threshold,
+      thresholds,
       decision?.probabilities ?? null,
       decision?.gesture ?? null,
     );
-    const mark = threshold === null ? "" : `percent, counts from ${Math.round(threshold * 100)}`;
-    setText(this.#hint, mark);
+    setText(this.#hint, thresholds === null ? "" : "percent, counts from the mark on");
   }
 }
