@@ -106,6 +106,11 @@ def read_manifest(folder: Path) -> Manifest:
             f"{path} has format version {manifest.format_version}, this server reads "
             f"{FORMAT_VERSION}: export the model again"
         )
+    if manifest.name != folder.resolve().name:
+        raise BundleError(
+            f"{path} is the manifest of {manifest.name!r}, not of {folder.name!r}: a bundle has "
+            "its folder's name, so rename the folder or export the model again"
+        )
     for name in HASHED_FILES:
         expected = manifest.files.get(name)
         if expected is None:

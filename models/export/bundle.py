@@ -81,7 +81,8 @@ def write_bundle(
         ("seen", "future") if export.task == "predict" else ("motion", "probabilities")
     )
     with tempfile.TemporaryDirectory() as scratch:
-        draft = Path(scratch)
+        draft = Path(scratch) / export.name
+        draft.mkdir()
         path = draft / MODEL_FILE
         example = torch.from_numpy(export.windows[:2])
         write_onnx(export.network, example, path, input_name, output_name)

@@ -95,6 +95,16 @@ def test_a_missing_file_is_refused_by_name(bundles):
         OnnxPredictor(bundles / "nothing")
 
 
+def test_a_bundle_under_another_name_is_refused(bundles):
+    (bundles / PREDICTOR).rename(bundles / "other")
+    with pytest.raises(BundleError, match=f"manifest of '{PREDICTOR}'"):
+        OnnxPredictor(bundles / "other")
+
+
+def test_what_ships_has_the_names_that_the_server_asks_for():
+    assert set(load_models().hashes) == {PREDICTOR, CLASSIFIER}
+
+
 def test_a_model_that_is_none_is_refused(bundles):
     folder = bundles / PREDICTOR
     manifest = read_manifest(folder)
