@@ -8,12 +8,11 @@ data set) is dealt with as by a live session that is never late.
 from collections.abc import Iterable, Iterator
 
 import msgspec
-import numpy as np
 
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.command import Ack
 from agent_server.domain.decision import Decision
-from agent_server.domain.motion import PREDICTED_FRAMES, BodyLost, Forecast
+from agent_server.domain.motion import BodyLost
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import RecordingError
@@ -32,7 +31,7 @@ from agent_server.recording.topics import CORE
 from agent_server.service.core import Core, Job, PendingWindow
 from agent_server.service.worker import Models, infer
 from agent_server.stages.classify import classify
-from agent_server.stages.predict import LAST_FRAME
+from agent_server.stages.predict import hold_last
 
 
 def replay(recording: Recording, core: Core, models: Models) -> Iterator[Decision]:
@@ -120,8 +119,7 @@ class _Follower:
             inference = infer(self._models, [window])[0]
             forecast, classification = inference.forecast, inference.classification
         else:
-            still = np.repeat(window.positions[-1:], PREDICTED_FRAMES, axis=0)
-            forecast = Forecast(still, LAST_FRAME, entry.failure)
+            forecast = hold_last(window, entry.failure)
             classification = classify(self._models.classifier, [window], [forecast])[0]
         return self._core.decide(pending, forecast, classification).decision
 

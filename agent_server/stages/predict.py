@@ -25,6 +25,11 @@ def predict(predictor: Predictor, windows: Sequence[Window]) -> list[Forecast]:
     except InferenceError as error:
         if len(windows) > 1:
             return [predict(predictor, [window])[0] for window in windows]
-        still = np.repeat(seen[0, -1:], PREDICTED_FRAMES, axis=0)
-        return [Forecast(still, LAST_FRAME, failure=str(error))]
+        return [hold_last(windows[0], str(error))]
     return [Forecast(one, predictor.name) for one in future]
+
+
+def hold_last(window: Window, failure: str) -> Forecast:
+    """The forecast that stands in when the predictor has failed: nothing moves any more."""
+    still = np.repeat(window.positions[-1:], PREDICTED_FRAMES, axis=0)
+    return Forecast(still, LAST_FRAME, failure)
