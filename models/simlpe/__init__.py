@@ -1,0 +1,1 @@
+"""Back to MLP: the simple baseline that most motion predictors lose to."""
