@@ -9,22 +9,24 @@ from pathlib import Path
 from typing import Literal
 
 import msgspec
-import numpy as np
 import torch
-from kornia.geometry.conversions import axis_angle_to_rotation_matrix
 
-from agent_server.domain.arrays import frozen
+from agent_server.domain.arrays import Float32, Float64, frozen
 from agent_server.domain.motion import RATE_HZ, MotionSequence
-from agent_server.domain.skeleton import CORE_JOINTS, CoreJoint
+from agent_server.domain.skeleton import CoreJoint
 from agent_server.errors import InvalidInput
+from models.data import kinematics
+from models.data.capture import facing_sensor
+from models.data.h36m import Split
+from models.data.tables import read_rows
 
 JOINTS = 38
 COLUMNS = 3 * (1 + JOINTS)
 ROWS_PER_FRAME = 2
 SOURCE = "cmu_mocap"
 LICENCE = "free for all uses"
-DISTANCE_M = 2.5
-"""Where the hips are put in front of the sensor; the recordings' own translation is dropped."""
+VALIDATION_EVERY, VALIDATION_FIRST = 7, 3
+"""Every seventh training file, from the fourth on, is held out for validation."""
 
 CORE_INDEX: dict[CoreJoint, int] = {
     CoreJoint.HEAD: 19,
@@ -52,21 +54,30 @@ class Skeleton(msgspec.Struct, frozen=True):
 
     unit: str
     parents: list[int]
-    offsets: list[list[float]]
+    offsets: list[tuple[float, float, float]]
 
 
 def read_skeleton(data: Path) -> Skeleton:
     """Read ``cmu_mocap/skeleton.json`` in the folder of the data sets.
 
     Raises:
-        InvalidInput: If it is missing or has not 38 joints.
+        InvalidInput: If it is missing, is no skeleton, has not 38 joints, or names a parent
+            after its child.
     """
     path = data / SOURCE / "skeleton.json"
     if not path.is_file():
         raise InvalidInput(f"{path} is missing: give the folder that holds {SOURCE}/ as --data")
-    skeleton = msgspec.json.decode(path.read_bytes(), type=Skeleton)
+    try:
+        skeleton = msgspec.json.decode(path.read_bytes(), type=Skeleton)
+    except msgspec.DecodeError as error:
+        raise InvalidInput(f"{path} is no skeleton ({error}): fetch it again") from error
     if len(skeleton.parents) != JOINTS or len(skeleton.offsets) != JOINTS:
         raise InvalidInput(f"{path} has {len(skeleton.parents)} joints, expected {JOINTS}")
+    for joint, parent in enumerate(skeleton.parents):
+        if not -1 <= parent < joint:
+            raise InvalidInput(
+                f"{path}: parents[{joint}] is {parent}, expected -1 or an earlier joint"
+            )
     return skeleton
 
 
@@ -80,45 +91,44 @@ def forward_kinematics(exponential_maps: torch.Tensor, skeleton: Skeleton) -> to
     Returns:
         Shape (T, 38, 3), mm, in the capture's frame: x to the body's left, y up, z forwards.
     """
-    frames = exponential_maps.shape[0]
     maps = exponential_maps.clone()
     maps[:, 0] = 0.0
-    local = axis_angle_to_rotation_matrix(maps.reshape(-1, 3)).reshape(frames, JOINTS, 3, 3)
+    # The set is written for row vectors, hence the transpose.
+    rotations = kinematics.rotation_matrices(maps).transpose(-1, -2)
     offsets = torch.tensor(skeleton.offsets, dtype=maps.dtype)
-    rotations: list[torch.Tensor] = []
-    positions: list[torch.Tensor] = []
-    for joint, parent in enumerate(skeleton.parents):
-        if parent < 0:
-            rotations.append(local[:, joint])
-            positions.append(offsets[joint].expand(frames, 3))
-        else:
-            # Row vectors: R_global(i) = R(i) R_global(parent), and offsets multiply from the left.
-            rotations.append(local[:, joint] @ rotations[parent])
-            positions.append(offsets[joint] @ rotations[parent] + positions[parent])
-    return torch.stack(positions, dim=1)
+    return kinematics.forward_kinematics(rotations, skeleton.parents, offsets)
+
+
+def read_positions(path: Path, skeleton: Skeleton) -> Float64:
+    """All joints of one recording at 25 Hz, the root's translation and orientation dropped.
+
+    Returns:
+        Shape (T, 38, 3), mm, in the capture's frame.
+
+    Raises:
+        InvalidInput: If the rows have not 117 finite columns.
+    """
+    rows = read_rows(path, COLUMNS)[::ROWS_PER_FRAME, 3:]
+    maps = torch.from_numpy(rows.reshape(-1, JOINTS, 3))
+    positions: Float64 = forward_kinematics(maps, skeleton).numpy()
+    return positions
 
 
 def read_file(path: Path, skeleton: Skeleton) -> MotionSequence:
     """Read one recording as 25 Hz core joints in the camera frame, facing the sensor.
 
     Raises:
-        InvalidInput: If the rows have not 117 columns.
+        InvalidInput: If the rows have not 117 finite columns.
     """
-    rows = np.loadtxt(path, delimiter=",", dtype=np.float64, ndmin=2)
-    if rows.shape[1] != COLUMNS:
-        raise InvalidInput(f"{path} has {rows.shape[1]} columns, expected {COLUMNS}")
-    maps = torch.from_numpy(rows[::ROWS_PER_FRAME, 3:].reshape(-1, JOINTS, 3))
-    core = forward_kinematics(maps, skeleton)[:, [CORE_INDEX[joint] for joint in CoreJoint]]
-    # Half a turn about y makes the body face the sensor: its right hand comes to larger x.
-    positions = core.numpy() * np.array([-1.0, 1.0, -1.0]) / 1000.0 + [0.0, 0.0, DISTANCE_M]
-    return MotionSequence(
-        positions=frozen(positions, (None, CORE_JOINTS, 3)),
-        confidence=frozen(np.ones(positions.shape[:2]), (None, CORE_JOINTS)),
-        rate_hz=RATE_HZ,
-        subject=path.stem,
-        label=path.parent.name,
-        source=SOURCE,
+    core = read_positions(path, skeleton)[:, [CORE_INDEX[joint] for joint in CoreJoint]]
+    return facing_sensor(
+        core / 1000.0, RATE_HZ, subject=path.stem, label=path.parent.name, source=SOURCE
     )
+
+
+def held_out(place: int) -> bool:
+    """Whether a published training file, by its place in the order of names, validates."""
+    return place % VALIDATION_EVERY == VALIDATION_FIRST
 
 
 def read_cmu(data: Path, split: Literal["train", "test"]) -> Iterator[MotionSequence]:
@@ -134,3 +144,32 @@ def read_cmu(data: Path, split: Literal["train", "test"]) -> Iterator[MotionSequ
     skeleton = read_skeleton(data)
     for path in sorted((data / SOURCE / split).glob("*/*.txt")):
         yield read_file(path, skeleton)
+
+
+def read_cmu_positions(data: Path, split: Split) -> dict[str, Float32]:
+    """Recordings for the literature's protocol, in the order of their names.
+
+    Args:
+        data: Folder that holds ``cmu_mocap/``.
+        split: ``test`` are the published test files; ``validation`` is every seventh of the
+            published training files, ``train`` the others.
+
+    Returns:
+        ``ACTION/NAME_N`` -> positions of all 38 joints at 25 Hz, shape (T, 38, 3), read-only, mm,
+        in the capture's frame, the root's translation and orientation dropped.
+
+    Raises:
+        InvalidInput: If the folder is not there or a file does not fit the layout.
+    """
+    skeleton = read_skeleton(data)
+    folder = data / SOURCE / ("test" if split == "test" else "train")
+    paths = sorted(folder.glob("*/*.txt"))
+    if not paths:
+        raise InvalidInput(f"{folder} holds no ACTION/NAME_N.txt: fetch the set again")
+    if split != "test":
+        held = split == "validation"
+        paths = [path for place, path in enumerate(paths) if held_out(place) == held]
+    return {
+        f"{path.parent.name}/{path.stem}": frozen(read_positions(path, skeleton), (None, JOINTS, 3))
+        for path in paths
+    }

@@ -5,7 +5,7 @@ from typing import Literal
 
 from agent_server.domain.gesture import IDLE
 from agent_server.synthetic.corpus import subject_names
-from models.data.cmu import IDLE_ACTIONS, read_cmu
+from models.data.cmu import IDLE_ACTIONS, held_out, read_cmu
 from models.data.synthetic import cached_recordings
 from models.data.windows import Recording
 
@@ -18,8 +18,6 @@ HELD_OUT: dict[str, tuple[int, int, int]] = {
     "test": (300, 12, 700),
 }
 """Number of the first person, how many people, and how many takes; people of no other split."""
-CMU_VALIDATION_EVERY = 7
-"""Every seventh training file of CMU is held out for validation; its test files stay test."""
 
 
 def cmu_split(data: Path, split: Split) -> list[Recording]:
@@ -43,7 +41,7 @@ def cmu_split(data: Path, split: Split) -> list[Recording]:
     if split == "test":
         return recordings
     held = split == "validation"
-    return [r for i, r in enumerate(recordings) if (i % CMU_VALIDATION_EVERY == 3) == held]
+    return [r for i, r in enumerate(recordings) if held_out(i) == held]
 
 
 def synthetic_split(cache: Path, split: Split, sequences: int = 0) -> list[Recording]:
