@@ -1,4 +1,4 @@
-"""Two protocols of the literature on Human3.6M, for any forecaster of 32 joints.
+"""Two protocols of the literature on Human3.6M.
 
 ``h36m-256`` is that of siMLPe and History Repeats Itself: 256 windows an action, mean joint
 distance at a frame. ``h36m-rms`` is that of the MA-WGAN papers (their equation 11): the root of the
@@ -6,29 +6,17 @@ mean squared joint distance over all frames up to a horizon, of 17 joints, on wi
 every 25 frames. Both use the actions of S5 of which both takes are there.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, Literal
 
 import numpy as np
 
 from agent_server.domain.arrays import Float32
-from agent_server.domain.motion import RATE_HZ
 from models.data.h36m import complete_actions, read_h36m
+from models.data.layouts import H36M
 
 SEEN = 50
 FUTURE = 25
-Protocol = Literal["h36m-256", "h36m-rms"]
-Forecaster = Callable[[Float32], Float32]
-"""(N, 50, 32, 3) seen -> (N, 25, 32, 3) expected, mm."""
-
-HORIZONS_MS: dict[Protocol, tuple[int, ...]] = {
-    "h36m-256": (80, 160, 320, 400, 560, 720, 880, 1000),
-    "h36m-rms": (80, 160, 320, 400, 1000),
-}
-
-PREDICTED = (2, 3, 4, 5, 7, 8, 9, 10, 12, 13, 14, 15, 17, 18, 19, 21, 22, 25, 26, 27, 29, 30)
-"""h36m-256: the joints that a model predicts."""
 COPIES = {16: 13, 20: 19, 23: 22, 24: 13, 28: 27, 31: 30}
 """h36m-256: a joint that lies where another does -> that other one. The rest never moves."""
 RMS_JOINTS = (0, 1, 2, 3, 6, 7, 8, 12, 13, 14, 15, 17, 18, 19, 25, 26, 27)
@@ -41,48 +29,65 @@ _MARGIN = 150
 _STRIDE = 25
 
 
-def repeat_last_frame(seen: Float32) -> Float32:
-    """The zero-velocity baseline."""
-    return np.repeat(seen[:, -1:], FUTURE, axis=1)
+def random_windows(data: Path) -> dict[str, Float32]:
+    """h36m-256: 128 windows of each take at the published random starts, (256, 75, 32, 3) mm."""
+    return _windows(data, _random)
 
 
-def evaluate_h36m(forecast: Forecaster, protocol: Protocol, data: Path) -> dict[str, Any]:
-    """Measure a forecaster.
+def regular_windows(data: Path) -> dict[str, Float32]:
+    """h36m-rms: windows that start every 25 frames, (N, 75, 32, 3) mm an action."""
+    return _windows(data, _regular)
+
+
+def joint_errors(expected: Float32, true: Float32) -> Float32:
+    """h36m-256: mean joint distance at each frame over all 32 joints.
 
     Args:
-        forecast: What is measured.
-        protocol: ``h36m-256`` or ``h36m-rms``.
-        data: Folder that holds ``h36m/``.
+        expected: The 22 joints that models predict, shape (N, F, 22, 3), mm.
+        true: All joints, shape (N, F, 32, 3), mm.
 
     Returns:
-        ``average`` and ``actions``: the error in mm at each horizon, by name of the action.
+        Shape (F,), mm.
     """
+    filled = _filled(expected, true)
+    for joint, original in COPIES.items():
+        filled[:, :, joint] = filled[:, :, original]
+    errors: Float32 = np.linalg.norm(filled - true, axis=-1).mean(axis=(0, 2))
+    return errors
+
+
+def rms_errors(expected: Float32, true: Float32) -> Float32:
+    """h36m-rms: root mean squared joint distance up to each frame, mean over windows.
+
+    Args:
+        expected: The 22 joints that models predict, shape (N, F, 22, 3), mm.
+        true: All joints, shape (N, F, 32, 3), mm.
+
+    Returns:
+        Shape (F,), mm.
+    """
+    off = (_filled(expected, true) - true)[:, :, RMS_JOINTS]
+    squared = np.square(off).sum(axis=-1).mean(axis=2)  # (N, F), mean over joints
+    until = np.cumsum(squared, axis=1) / np.arange(1, squared.shape[1] + 1)
+    errors: Float32 = np.sqrt(until).mean(axis=0)
+    return errors
+
+
+def _filled(expected: Float32, true: Float32) -> Float32:
+    """The predicted joints in their places; what no model predicts keeps its true value."""
+    filled = true.copy()
+    filled[:, :, H36M.joints] = expected
+    return filled
+
+
+def _windows(
+    data: Path, cut: Callable[[Float32, Float32], Iterator[Float32]]
+) -> dict[str, Float32]:
     takes = complete_actions(read_h36m(data, "test"))
-    measure, cut = (
-        (_joint_errors, _random_windows)
-        if protocol == "h36m-256"
-        else (_rms_errors, _regular_windows)
-    )
-    actions = {}
-    for action, pair in takes.items():
-        windows = np.stack(list(cut(*pair)))
-        seen, true = windows[:, :SEEN], windows[:, SEEN:]
-        actions[action] = measure(forecast(seen), true)
-    frames = [ms * RATE_HZ // 1000 - 1 for ms in HORIZONS_MS[protocol]]
-
-    def at_horizons(errors: Float32) -> dict[str, float]:
-        values = [round(float(errors[frame]), 2) for frame in frames]
-        return dict(zip(map(str, HORIZONS_MS[protocol]), values, strict=True))
-
-    return {
-        "protocol": protocol,
-        "average": {"error_mm": at_horizons(np.mean(list(actions.values()), axis=0))},
-        "actions": {action: {"error_mm": at_horizons(e)} for action, e in actions.items()},
-    }
+    return {action: np.stack(list(cut(*pair))) for action, pair in takes.items()}
 
 
-def _random_windows(first: Float32, second: Float32) -> Iterable[Float32]:
-    """128 windows of each take at the published random starts, (75, 32, 3) each."""
+def _random(first: Float32, second: Float32) -> Iterator[Float32]:
     # The legacy generator is the protocol: other implementations draw with it.
     rng = np.random.RandomState(_SEED)
     for _ in range(_PAIRS):
@@ -91,30 +96,7 @@ def _random_windows(first: Float32, second: Float32) -> Iterable[Float32]:
             yield take[start : start + SEEN + FUTURE]
 
 
-def _regular_windows(first: Float32, second: Float32) -> Iterable[Float32]:
+def _regular(first: Float32, second: Float32) -> Iterator[Float32]:
     for take in (first, second):
         for start in range(0, len(take) - SEEN - FUTURE + 1, _STRIDE):
             yield take[start : start + SEEN + FUTURE]
-
-
-def _joint_errors(expected: Float32, true: Float32) -> Float32:
-    """Mean joint distance at each frame, shape (25,), over all 32 joints."""
-    filled = true.copy()
-    filled[:, :, PREDICTED] = expected[:, :, PREDICTED]
-    for joint, original in COPIES.items():
-        filled[:, :, joint] = filled[:, :, original]
-    errors: Float32 = np.linalg.norm(filled - true, axis=-1).mean(axis=(0, 2))
-    return errors
-
-
-def _rms_errors(expected: Float32, true: Float32) -> Float32:
-    """Root mean squared joint distance up to each frame, shape (25,), mean over windows."""
-    off = (expected - true)[:, :, RMS_JOINTS]
-    squared = np.square(off).sum(axis=-1).mean(axis=2)  # (N, 25), mean over joints
-    until = np.cumsum(squared, axis=1) / np.arange(1, FUTURE + 1)
-    errors: Float32 = np.sqrt(until).mean(axis=0)
-    return errors
-
-
-BASELINES: Mapping[str, Forecaster] = {"zero_velocity": repeat_last_frame}
-"""Forecasters that need no training."""

@@ -1,63 +1,142 @@
-"""How far predicted joints are from the true ones, beside standing still."""
+"""How far predicted motion is from the true one, and whether it moves like it."""
 
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-import torch
 
 from agent_server.domain.arrays import Float32
-from agent_server.domain.motion import FRAME_NS, SEEN_FRAMES
-from agent_server.domain.skeleton import CORE_BONES
-from models.data.windows import WindowSet
-from models.export.session import OnnxModel
+from models.evaluation.forecasters import Forecaster
+from models.evaluation.protocols import Protocol
 
-HORIZONS_MS = (80, 160, 320, 400, 560, 1000, 1500, 2000)
+MM = 1000.0
 
 
-def horizon_errors(predicted: Float32, true: Float32) -> dict[str, float]:
-    """Mean joint distance in mm at each horizon (MPJPE); both (N, 50, 9, 3), metres."""
-    errors = 1000 * np.linalg.norm(predicted - true, axis=-1).mean(axis=(0, 2))
-    return {str(ms): round(float(errors[ms * 1_000_000 // FRAME_NS - 1]), 2) for ms in HORIZONS_MS}
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What a model predicts for the windows of an action, in mm.
+
+    Attributes:
+        seen: Shape (N, seen, J, 3), the joints that models predict.
+        predicted: Shape (N, future, J, 3).
+        true: Shape (N, future, J, 3).
+        errors: Shape (future,), the protocol's error at each frame.
+    """
+
+    seen: Float32
+    predicted: Float32
+    true: Float32
+    errors: Float32
 
 
-def mean_step(start: Float32, future: Float32) -> Float32:
-    """Mean joint step in mm a frame, shape (50,): how fast the motion is at each frame."""
-    steps = np.diff(future, axis=1, prepend=start)
-    result: Float32 = 1000 * np.linalg.norm(steps, axis=-1).mean(axis=(0, 2))
+def outcomes(model: Forecaster, protocol: Protocol, data: Path) -> dict[str, Outcome]:
+    """Run a model over all windows of a protocol, by action."""
+    result = {}
+    for action, windows in protocol.windows(data).items():
+        joints = windows[:, :, protocol.layout.joints]
+        seen, true = joints[:, : protocol.seen], joints[:, protocol.seen :]
+        predicted = MM * model(seen / np.float32(MM))
+        errors = protocol.measure(predicted, windows[:, protocol.seen :])
+        result[action] = Outcome(seen, predicted, true, errors)
     return result
 
 
-def bone_error(predicted: Float32, seen: Float32) -> float:
-    """Mean deviation of predicted bones from their last seen length, in mm."""
-    parents, children = (list(ends) for ends in zip(*CORE_BONES, strict=True))
-
-    def lengths(poses: Float32) -> Float32:
-        bones: Float32 = np.linalg.norm(poses[..., children, :] - poses[..., parents, :], axis=-1)
-        return bones
-
-    return round(1000 * float(np.abs(lengths(predicted) - lengths(seen[:, -1:])).mean()), 2)
-
-
-def evaluate_prediction(model: OnnxModel, windows: WindowSet) -> dict[str, Any]:
-    """All figures of a predictor on held-out windows.
+def joint_speed(start: Float32, future: Float32) -> Float32:
+    """Mean per-joint speed (MPJS) in mm a frame, shape (F,).
 
     Args:
-        model: seen (B, 25, 9, 3) -> future (B, 50, 9, 3), normalised metres.
-        windows: Errors are measured against the motion without sensor noise.
+        start: Last seen pose, shape (N, 1, J, 3), mm.
+        future: Shape (N, F, J, 3), mm.
     """
-    observed, clean = windows.frames(torch.arange(len(windows)))
-    seen = observed[:, :SEEN_FRAMES].numpy()
-    true = clean[:, SEEN_FRAMES:].numpy()
-    start = seen[:, -1:]
-    predicted = model.batched(seen)
-    speed, true_speed = mean_step(start, predicted), mean_step(start, true)
+    steps = np.diff(future, axis=1, prepend=start)
+    speed: Float32 = np.linalg.norm(steps, axis=-1).mean(axis=(0, 2))
+    return speed
+
+
+def bone_error(predicted: Float32, true: Float32, bones: tuple[tuple[int, int], ...]) -> float:
+    """Mean difference of bone lengths, predicted against true, in mm; (N, F, J, 3) both."""
+    parents, children = (list(ends) for ends in zip(*bones, strict=True))
+
+    def lengths(poses: Float32) -> Float32:
+        lines: Float32 = np.linalg.norm(poses[..., children, :] - poses[..., parents, :], axis=-1)
+        return lines
+
+    return float(np.abs(lengths(predicted) - lengths(true)).mean())
+
+
+def figures(outcome: Outcome, protocol: Protocol) -> dict[str, Any]:
+    """All figures of one action.
+
+    ``mpjpe`` holds the protocol's error at each horizon; ``mpjs_error`` is the mean over time of
+    the difference of mean speeds; ``jump_mm`` is the mean size of the first predicted step, which
+    ``true_jump_mm`` gives of the truth.
+    """
+    start = outcome.seen[:, -1:]
+    speed = joint_speed(start, outcome.predicted)
+    true_speed = joint_speed(start, outcome.true)
+    at = {ms: float(outcome.errors[f]) for ms, f in zip(*_horizons(protocol), strict=True)}
     return {
-        "windows": len(windows),
-        "mpjpe": horizon_errors(predicted, true),
-        "zero_velocity": horizon_errors(np.broadcast_to(start, true.shape), true),
-        "mpjs_mm": round(float(speed.mean()), 2),
-        "true_mpjs_mm": round(float(true_speed.mean()), 2),
-        "mpjs_error_mm": round(float(np.abs(speed - true_speed).mean()), 2),
-        "jump_mm": round(float(speed[0]), 2),
-        "bone_error_mm": bone_error(predicted, seen),
+        "mpjpe": at,
+        "mpjs_mm": float(speed.mean()),
+        "true_mpjs_mm": float(true_speed.mean()),
+        "mpjs_error": float(np.abs(speed - true_speed).mean()),
+        "jump_mm": float(speed[0]),
+        "true_jump_mm": float(true_speed[0]),
+        "bone_error_mm": bone_error(outcome.predicted, outcome.true, protocol.layout.bones),
+    }
+
+
+def evaluate(model: Forecaster, protocol: Protocol, data: Path) -> dict[str, Any]:
+    """Measure a model under a protocol.
+
+    Args:
+        model: What is measured.
+        protocol: How.
+        data: Folder that holds the set folders.
+
+    Returns:
+        ``average`` over the actions, ``actions`` by name, ``parameters`` and ``ms_per_window``.
+    """
+    results = outcomes(model, protocol, data)
+    return summary(model, protocol, results)
+
+
+def summary(model: Forecaster, protocol: Protocol, results: dict[str, Outcome]) -> dict[str, Any]:
+    """The figures of outcomes, rounded, with their average over the actions."""
+    actions = {action: figures(outcome, protocol) for action, outcome in results.items()}
+    return {
+        "model": model.name,
+        "protocol": protocol.name,
+        "metric": protocol.metric,
+        "windows": sum(len(outcome.seen) for outcome in results.values()),
+        "average": _rounded(_mean(list(actions.values()))),
+        "actions": {action: _rounded(row) for action, row in actions.items()},
+        "parameters": model.parameters,
+        "ms_per_window": model.window_ms(),
+    }
+
+
+def gain_percent(errors: dict[str, float], baseline: dict[str, float]) -> dict[str, float]:
+    """By how many percent errors are under those of a baseline, at each horizon."""
+    return {ms: round(100 * (1 - error / baseline[ms]), 1) for ms, error in errors.items()}
+
+
+def _horizons(protocol: Protocol) -> tuple[list[str], list[int]]:
+    return [str(ms) for ms in protocol.horizons_ms], protocol.frames
+
+
+def _mean(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    return {
+        key: _mean([row[key] for row in rows])
+        if isinstance(rows[0][key], dict)
+        else sum(row[key] for row in rows) / len(rows)
+        for key in rows[0]
+    }
+
+
+def _rounded(row: dict[str, Any]) -> dict[str, Any]:
+    return {
+        key: _rounded(value) if isinstance(value, dict) else round(value, 2)
+        for key, value in row.items()
     }

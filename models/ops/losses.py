@@ -1,29 +1,38 @@
 """The losses of the manifold-aware WGAN papers, in torch."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import torch
-
-from agent_server.domain.skeleton import CORE_BONES
 
 TINY = 1e-12
 
 
 def gradient_penalty(
-    critic: Callable[[torch.Tensor], torch.Tensor],
-    real: torch.Tensor,
-    fake: torch.Tensor,
+    critic: Callable[..., torch.Tensor],
+    real: Sequence[torch.Tensor],
+    fake: Sequence[torch.Tensor],
     generator: torch.Generator,
 ) -> torch.Tensor:
-    """Mean of (|gradient| - 1)^2 at random points between real and fake tangent vectors (B, D).
+    """Mean of (|gradient| - 1)^2 at random points between real and fake inputs of the critic.
 
     The tangent space is flat, so a straight line between two of its points stays in it.
+
+    Args:
+        critic: Takes the inputs, gives a score each.
+        real: The inputs, shape (B, ...) each: the tangent vectors, and what goes with them.
+        fake: The same of the generator.
+        generator: Draws the points.
     """
-    share = torch.rand(len(real), 1, generator=generator).to(real.device)
-    between = (share * real + (1 - share) * fake).detach().requires_grad_(True)
-    score = critic(between).sum()
-    (gradient,) = torch.autograd.grad(score, between, create_graph=True)
-    return ((torch.sqrt((gradient * gradient).sum(-1) + TINY) - 1) ** 2).mean()
+    share = torch.rand(len(real[0]), generator=generator).to(real[0].device)
+    between = [
+        torch.lerp(a, b, share.view(-1, *[1] * (a.dim() - 1))).detach().requires_grad_(True)
+        for a, b in zip(fake, real, strict=True)
+    ]
+    score = critic(*between).sum()
+    # A critic that ignores one of its inputs has no gradient there: zeros stand for it.
+    gradients = torch.autograd.grad(score, between, create_graph=True, materialize_grads=True)
+    squared = [(g * g).flatten(1).sum(1) for g in gradients]
+    return ((torch.sqrt(torch.stack(squared).sum(0) + TINY) - 1) ** 2).mean()
 
 
 def gram_distance(predicted: torch.Tensor, true: torch.Tensor) -> torch.Tensor:
@@ -43,14 +52,36 @@ def gram_distance(predicted: torch.Tensor, true: torch.Tensor) -> torch.Tensor:
     return (predicted**2).sum((-1, -2)) + (true**2).sum((-1, -2)) - 2 * nuclear
 
 
-def bone_lengths(poses: torch.Tensor) -> torch.Tensor:
-    """Lengths of the eight bones: (..., 9, 3) -> (..., 8), metres."""
-    parents = [parent for parent, _ in CORE_BONES]
-    children = [child for _, child in CORE_BONES]
-    bones = poses[..., children, :] - poses[..., parents, :]
-    return torch.sqrt((bones * bones).sum(-1) + TINY)
+def bone_lengths(poses: torch.Tensor, bones: Sequence[tuple[int, int]]) -> torch.Tensor:
+    """Lengths of bones (parent, child): (..., J, 3) -> (..., number of bones), metres."""
+    parents = [parent for parent, _ in bones]
+    children = [child for _, child in bones]
+    lines = poses[..., children, :] - poses[..., parents, :]
+    return torch.sqrt((lines * lines).sum(-1) + TINY)
 
 
-def bone_loss(predicted: torch.Tensor, true: torch.Tensor) -> torch.Tensor:
+def bone_loss(
+    predicted: torch.Tensor, true: torch.Tensor, bones: Sequence[tuple[int, int]]
+) -> torch.Tensor:
     """Mean absolute difference of bone lengths in metres (Chopin et al. 2021, eq. 9)."""
-    return (bone_lengths(predicted) - bone_lengths(true)).abs().mean()
+    return (bone_lengths(predicted, bones) - bone_lengths(true, bones)).abs().mean()
+
+
+def joint_distance(
+    predicted: torch.Tensor, true: torch.Tensor, weights: torch.Tensor | None = None
+) -> torch.Tensor:
+    """Mean Euclidean distance of the joints of motions (B, T, J, 3), in their unit.
+
+    Args:
+        predicted: Positions or steps.
+        true: The same of the truth.
+        weights: Of the frames, shape (T,) with mean one.
+    """
+    frames = torch.sqrt(((predicted - true) ** 2).sum(-1) + TINY).mean(dim=(0, 2))
+    return frames.mean() if weights is None else (weights * frames).mean()
+
+
+def near_weights(frames: int, power: float) -> torch.Tensor:
+    """Weights t**-power of the frames 1, 2, ..., with mean one, shape (frames,)."""
+    weights = torch.arange(1, frames + 1, dtype=torch.float32) ** -power
+    return weights / weights.mean()

@@ -42,15 +42,24 @@ def exp(tangent: torch.Tensor, base: torch.Tensor) -> torch.Tensor:
     return torch.cos(lanes)[..., :1] * base + _sinc(lanes)[..., :1] * tangent
 
 
-def log(point: torch.Tensor, base: torch.Tensor) -> torch.Tensor:
+def log(point: torch.Tensor, base: torch.Tensor, clip: float | None = None) -> torch.Tensor:
     """The tangent vector at ``base`` whose exp is ``point``; both (..., D).
 
     The angle comes from atan2, which keeps its digits where arccos has none left, so the
     published clipping of the cosine is not needed. Antipodal points have no unique answer
     and give zero.
+
+    Args:
+        point: Unit vectors.
+        base: Unit vectors.
+        clip: Take the angle from the cosine clipped to this range, as the MA-WGAN authors' code
+            does with 0.98. It bounds the factor near the antipode, where the map is then wrong.
     """
     cosine = _dot(base, point)
     across = point - cosine * base
+    if clip is not None:
+        angle = torch.acos(cosine.clamp(-clip, clip))
+        return angle / torch.sin(angle) * across
     sine = torch.sqrt(_dot(across, across) + TINY**2)
     return torch.atan2(sine, cosine) / sine * across
 

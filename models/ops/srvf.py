@@ -10,13 +10,13 @@ import torch
 TINY = 1e-12
 
 
-def _norm(vectors: torch.Tensor) -> torch.Tensor:
+def _norm(vectors: torch.Tensor, floor: float = TINY) -> torch.Tensor:
     """Norm over the last axis, which stays with length 1; never zero, so it has a gradient.
 
     The sum is a product of matrices, see models.ops.sphere about equal bits.
     """
     ones = torch.ones(vectors.shape[-1], 1, dtype=vectors.dtype, device=vectors.device)
-    return torch.sqrt((vectors * vectors) @ ones + TINY**2)
+    return torch.sqrt((vectors * vectors) @ ones + floor**2)
 
 
 def to_sphere(curve: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
@@ -29,9 +29,23 @@ def to_sphere(curve: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         SRVF of unit norm, shape (..., T, D), zero for a curve that stands still; and the
         length, shape (...,), in the curve's unit.
     """
-    steps = curve[..., 1:, :] - curve[..., :-1, :]
-    speed = _norm(steps)
-    length = speed.sum(-2, keepdim=True)
+    return steps_to_sphere(curve[..., 1:, :] - curve[..., :-1, :])
+
+
+def steps_to_sphere(steps: torch.Tensor, floor: float = TINY) -> tuple[torch.Tensor, torch.Tensor]:
+    """SRVF and length of the curve that takes these steps.
+
+    Args:
+        steps: Shape (..., T, D), in any unit of length.
+        floor: Added to each speed at right angles. It bounds the gradient where the curve
+            stands still; the norm of the SRVF then falls below one.
+
+    Returns:
+        SRVF, shape (..., T, D), and the length, shape (...,).
+    """
+    speed = _norm(steps, floor)
+    ones = torch.ones(1, steps.shape[-2], dtype=steps.dtype, device=steps.device)
+    length = ones @ speed
     return steps / torch.sqrt(speed * length), length[..., 0, 0]
 
 

@@ -10,6 +10,8 @@ import math
 import torch
 from torch import nn
 
+from models.ops.half import product
+
 
 class TimeLinear(nn.Module):
     """y = W x + b over the first axis.
@@ -22,7 +24,7 @@ class TimeLinear(nn.Module):
 
     def __init__(self, frames_in: int, frames_out: int, half: bool = False) -> None:
         super().__init__()
-        self.half = half
+        self.in_half = half
         self.weight = nn.Parameter(torch.empty(frames_out, frames_in))
         self.bias = nn.Parameter(torch.zeros(frames_out, 1))
         nn.init.uniform_(self.weight, -1 / math.sqrt(frames_in), 1 / math.sqrt(frames_in))
@@ -30,8 +32,5 @@ class TimeLinear(nn.Module):
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         """(T, ...) -> (T', ...)."""
         flat = x.flatten(1)
-        if self.half and self.training:
-            mixed = (self.weight.bfloat16() @ flat.bfloat16()).float()
-        else:
-            mixed = self.weight @ flat
-        return (mixed + self.bias).unflatten(1, x.shape[1:])
+        mixed = product(self.weight, flat, self.in_half and self.training)
+        return (mixed + self.bias).reshape(-1, *x.shape[1:])

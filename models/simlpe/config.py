@@ -44,6 +44,7 @@ class TrainConfig:
         last_rate: Rate after the drop; without one the rate follows a cosine to zero.
         drop_at: Update at which the rate drops to ``last_rate``.
         weight_decay: As the L2 term of Adam with a drop, decoupled without.
+        clip: Largest norm of the gradient; the published recipe has none.
         ema: Decay of the averaged weights, 0 for none.
         half: Multiply in bfloat16, which is exact enough and twice as fast on recent CPUs.
         validate_every: Updates between two validations.
@@ -57,13 +58,20 @@ class TrainConfig:
     last_rate: float = 1e-5
     drop_at: int | None = 30_000
     weight_decay: float = 1e-4
+    clip: float = float("inf")
     ema: float = 0.0
     half: bool = False
     validate_every: int = 1_000
 
 
 CPU = TrainConfig(
-    steps=12_000, learning_rate=3e-3, drop_at=None, ema=0.998, half=True, validate_every=500
+    steps=10_000,
+    learning_rate=1.5e-3,
+    drop_at=None,
+    clip=5.0,
+    ema=0.998,
+    half=True,
+    validate_every=500,
 )
 
 CONFIGS: dict[str, TrainConfig] = {"published": TrainConfig(), "cpu": CPU}

@@ -64,14 +64,15 @@ class SiMlpe(nn.Module):
         for block in self.blocks:
             x = block(x)
         offsets = self.idct @ self.out(first + x).transpose(0, 1)
-        return seen[:, -1:] + offsets
+        future: torch.Tensor = seen[:, -1:] + offsets
+        return future
 
     def forward(self, seen: torch.Tensor) -> torch.Tensor:
         """(B, seen, J, 3) -> (B, future, J, 3), metres, as many passes as it takes."""
-        shape = seen.shape[2:]
         past = seen.flatten(2)
         parts: list[torch.Tensor] = []
         for _ in range(0, self.config.future, self.config.step):
             parts.append(self.one_pass(past))
             past = torch.cat([past, parts[-1]], dim=1)[:, -self.config.seen :]
-        return torch.cat(parts, dim=1)[:, : self.config.future].unflatten(2, shape)
+        future = torch.cat(parts, dim=1)[:, : self.config.future]
+        return future.reshape(*future.shape[:2], *seen.shape[2:])

@@ -9,6 +9,7 @@ from torch import nn
 
 from models.data.clips import Clips, reverse_some
 from models.data.sets import motion_set
+from models.ops.losses import joint_distance
 from models.simlpe.config import NetworkConfig, TrainConfig
 from models.simlpe.network import SiMlpe
 from models.training.ema import Ema
@@ -18,11 +19,6 @@ from models.training.schedule import warm_cosine
 
 VALIDATION_STRIDE = 40
 VALIDATION_BATCH = 512
-
-
-def joint_distance(predicted: torch.Tensor, true: torch.Tensor) -> torch.Tensor:
-    """Mean Euclidean distance of vectors in space; (..., 3) both."""
-    return torch.sqrt(((predicted - true) ** 2).sum(-1) + 1e-12).mean()
 
 
 @torch.no_grad()
@@ -69,6 +65,7 @@ class SiMlpeLearner:
         velocity = joint_distance(predicted.diff(dim=1), true.diff(dim=1))
         self.optimizer.zero_grad(set_to_none=True)
         torch.autograd.backward(position + velocity)
+        nn.utils.clip_grad_norm_(self.network.parameters(), self.config.clip)
         self.optimizer.step()
         self.schedule.step()
         self.ema.update(self.network)

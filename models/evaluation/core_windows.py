@@ -1,0 +1,53 @@
+"""The server's own protocol: nine joints, 25 frames seen, 50 predicted, every 25 frames.
+
+CMU's test files are motion capture like part of the training; MSRC-12 is a Kinect that no shipped
+weight has seen. Windows start at the first tracked frame.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from agent_server.domain.arrays import Float32
+from agent_server.domain.motion import CLASSIFIED_FRAMES, FRAME_NS
+from agent_server.skeleton.readers.msrc12 import read_msrc12
+from models.data.cmu import read_cmu
+from models.evaluation.sim2real import core_stream, source_files
+
+STRIDE = 25
+MM = np.float32(1000)
+
+
+def cmu_core_windows(data: Path) -> dict[str, Float32]:
+    """Windows (N, 75, 9, 3) of CMU's test files in mm, by action."""
+    return _by_name((motion.label or "", motion.positions) for motion in read_cmu(data, "test"))
+
+
+def msrc12_core_windows(data: Path) -> dict[str, Float32]:
+    """Windows (N, 75, 9, 3) of all MSRC-12 recordings in mm, by gesture.
+
+    Frames go through the server's own retargeting and resampling. A pause of the sensor starts a
+    new stretch, and no window reaches across.
+    """
+    return _by_name(_msrc12_stretches(data))
+
+
+def _msrc12_stretches(data: Path) -> Iterable[tuple[str, Float32]]:
+    for path in source_files(data / "msrc12", "*.csv*"):
+        recording = read_msrc12(path)
+        gesture = min((mark.tag for mark in recording.marks), default="untagged")
+        stream = core_stream(recording)
+        breaks = np.flatnonzero(np.diff(stream.stamps_ns) > FRAME_NS) + 1
+        for stretch in np.split(stream.positions, breaks):
+            yield gesture, stretch
+
+
+def _by_name(stretches: Iterable[tuple[str, Float32]]) -> dict[str, Float32]:
+    windows: dict[str, list[Float32]] = {}
+    for name, positions in stretches:
+        starts = range(0, len(positions) - CLASSIFIED_FRAMES + 1, STRIDE)
+        windows.setdefault(name, []).extend(
+            MM * positions[start : start + CLASSIFIED_FRAMES] for start in starts
+        )
+    return {name: np.stack(found).astype(np.float32) for name, found in windows.items() if found}

@@ -1,0 +1,138 @@
+"""Where the predictor's batches come from."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+import torch
+
+from agent_server.domain.motion import SEEN_FRAMES
+from models.data.clips import Clips, mirror_some, reverse_some
+from models.data.layouts import CORE, Layout
+from models.data.sets import motion_set
+from models.data.splits import cmu_split, synthetic_split
+from models.data.windows import HALF_QUARTER_TURN, Augmentation, WindowSet, augment, cut
+from models.ma_wgan.config import TrainConfig
+
+AUGMENTATION = Augmentation(yaw=HALF_QUARTER_TURN, scale=0.1, noise_m=0.015, drop=0.05)
+SYNTHETIC_SHARE = 0.6
+VALIDATION_STRIDE = 40
+SCALE = 0.05
+"""Largest relative change of a recorded body's size."""
+
+
+class Windows(NamedTuple):
+    """Past and future of some windows, metres.
+
+    Attributes:
+        seen: Shape (B, seen, J, 3), as the sensor saw it.
+        future: Shape (B, future, J, 3), without sensor noise.
+    """
+
+    seen: torch.Tensor
+    future: torch.Tensor
+
+
+class Source(Protocol):
+    """Training and validation windows of one body layout."""
+
+    @property
+    def layout(self) -> Layout:
+        """The joints."""
+
+    @property
+    def validation(self) -> dict[str, Windows]:
+        """Windows by name."""
+
+    def draw(self, count: int, generator: torch.Generator) -> Windows:
+        """Random, augmented training windows."""
+
+
+@dataclass(frozen=True, slots=True)
+class SensorSource:
+    """Windows of virtual people as sensors see them, and of motion capture: nine joints.
+
+    Attributes:
+        training: Share of each batch, and the windows that it is drawn from.
+        validation: Windows by name.
+        layout: The nine core joints.
+    """
+
+    training: Sequence[tuple[float, WindowSet]]
+    validation: dict[str, Windows]
+    layout: Layout = CORE
+
+    def draw(self, count: int, generator: torch.Generator) -> Windows:
+        """An augmented batch, each set with its share."""
+        parts = []
+        total = sum(share for share, _ in self.training)
+        for share, windows in self.training:
+            some = max(1, round(count * share / total))
+            parts.append(windows.frames(torch.randint(len(windows), (some,), generator=generator)))
+        observed = torch.cat([part[0] for part in parts])
+        clean = torch.cat([part[1] for part in parts])
+        return split(*augment(observed, clean, AUGMENTATION, generator))
+
+
+@dataclass(frozen=True, slots=True)
+class ClipSource:
+    """Windows of plain motion; half run backwards, half are mirrored.
+
+    Attributes:
+        clips: Training windows.
+        seen: Frames of them that are seen.
+        validation: Windows by name.
+        layout: The joints.
+    """
+
+    clips: Clips
+    seen: int
+    validation: dict[str, Windows]
+    layout: Layout
+
+    def draw(self, count: int, generator: torch.Generator) -> Windows:
+        """An augmented batch."""
+        motion = reverse_some(self.clips.draw(count, generator), generator)
+        motion = mirror_some(motion, self.layout.mirror, generator)
+        scale = 1 + SCALE * (2 * torch.rand(count, 1, 1, 1, generator=generator) - 1)
+        motion = motion * scale
+        return Windows(motion[:, : self.seen], motion[:, self.seen :])
+
+
+def split(observed: torch.Tensor, clean: torch.Tensor) -> Windows:
+    """Seen and future part of normalised windows (B, 75, 9, 3)."""
+    return Windows(observed[:, :SEEN_FRAMES], clean[:, SEEN_FRAMES:])
+
+
+def whole(windows: WindowSet) -> Windows:
+    """All of them."""
+    return split(*windows.frames(torch.arange(len(windows))))
+
+
+def make_source(config: TrainConfig, data: Path, cache: Path) -> Source:
+    """The source that a configuration asks for.
+
+    Args:
+        config: Which data, and how many frames are seen.
+        data: Folder that holds the set folders.
+        cache: Folder of generated recordings.
+    """
+    network = config.network
+    if config.data != "server":
+        motions = motion_set(config.data)
+        held = motions.clips(data, "validation", network.seen, VALIDATION_STRIDE).all()
+        return ClipSource(
+            motions.clips(data, "train", network.seen),
+            network.seen,
+            {config.data: Windows(held[:, : network.seen], held[:, network.seen :])},
+            motions.layout,
+        )
+    synthetic = cut(synthetic_split(cache, "train", config.synthetic_sequences))
+    return SensorSource(
+        [(SYNTHETIC_SHARE, synthetic), (1 - SYNTHETIC_SHARE, cut(cmu_split(data, "train")))],
+        {
+            "synthetic": whole(cut(synthetic_split(cache, "validation"), stride=25)),
+            "cmu": whole(cut(cmu_split(data, "validation"), stride=5)),
+        },
+    )
