@@ -1,0 +1,1 @@
+"""Figures of predictors side by side, each with a title that says what was found."""
