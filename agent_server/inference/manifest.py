@@ -17,6 +17,7 @@ MODEL_FILE = "model.onnx"
 GOLDEN_FILE = "golden.npz"
 CARD_FILE = "CARD.md"
 MANIFEST_FILE = "manifest.json"
+SkeletonName = Literal["core9", "h36m22", "cmu25"]
 HASHED_FILES = (MODEL_FILE, GOLDEN_FILE, CARD_FILE)
 
 
@@ -46,12 +47,13 @@ class Manifest(msgspec.Struct, frozen=True):
         name: Name of the bundle, the same as its folder's.
         version: Version of the model.
         task: ``predict`` (seen -> future positions) or ``classify`` (motion -> probabilities).
-        skeleton: ``core9``.
+        skeleton: ``core9``, the one that the server runs, or that of a research model.
         rate_hz: Frames a second of input and output.
         input_frames: Frames the model takes.
         output_frames: Frames it gives (0 for a classifier).
         labels: Class names in output order (empty for a predictor).
-        normaliser: ``navel_last_seen``: metres, origin at the navel of the last seen frame.
+        normaliser: ``navel_last_seen``: metres, origin at the navel of the last seen frame;
+            ``root``: metres, origin at the root, which neither moves nor turns.
         opset: ONNX operator set.
         parameters: Number of trained parameters.
         batch_exact: Whether a row of a batch has the bits of a batch of one.
@@ -65,12 +67,12 @@ class Manifest(msgspec.Struct, frozen=True):
     name: str
     version: str
     task: Literal["predict", "classify"]
-    skeleton: Literal["core9"]
+    skeleton: SkeletonName
     rate_hz: int
     input_frames: int
     output_frames: int
     labels: list[str]
-    normaliser: Literal["navel_last_seen"]
+    normaliser: Literal["navel_last_seen", "root"]
     opset: int
     parameters: int
     batch_exact: bool

@@ -36,6 +36,11 @@ class OnnxModel:
                 f"{folder} holds a model that can {self.manifest.task}, one that can {task} is "
                 "needed: name another bundle"
             )
+        if self.manifest.skeleton != "core9":
+            raise BundleError(
+                f"{folder} holds a research model of {self.manifest.skeleton}, the server runs "
+                "models of core9: name another bundle"
+            )
         options = ort.SessionOptions()
         options.intra_op_num_threads = 1
         options.inter_op_num_threads = 1

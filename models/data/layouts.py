@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from agent_server.domain.skeleton import CORE_BONES, CoreJoint
+from agent_server.inference.manifest import SkeletonName
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +18,7 @@ class Layout:
         bones: Pairs (parent, child) of places among the chosen joints.
     """
 
-    name: str
+    name: SkeletonName
     joints: tuple[int, ...]
     mirror: tuple[int, ...]
     bones: tuple[tuple[int, int], ...]
@@ -29,7 +30,7 @@ class Layout:
 
 
 def _layout(
-    name: str,
+    name: SkeletonName,
     joints: tuple[int, ...],
     pairs: dict[int, int],
     bones: tuple[tuple[int, int], ...],

@@ -73,7 +73,7 @@ def forecaster(name: str, protocol: Protocol, data: Path) -> Forecaster:
     if name == "one_fc":
         return one_fc(protocol, data)
     folder = SERVER_BUNDLE if name == "server" else BENCHMARKS / f"{name}_{protocol.data}"
-    if (name == "server") != (protocol.data == "core") and not folder.is_dir():
+    if not folder.is_dir():
         raise ConfigError(
             f"model '{name}' has no bundle for protocol {protocol.name} ({folder} is missing): "
             f"choose one of {', '.join(names_for(protocol))}, or train and export it"

@@ -29,13 +29,15 @@ _MARGIN = 150
 _STRIDE = 25
 
 
-def random_windows(data: Path) -> dict[str, Float32]:
+def random_windows(data: Path, cache: Path) -> dict[str, Float32]:
     """h36m-256: 128 windows of each take at the published random starts, (256, 75, 32, 3) mm."""
+    del cache  # nothing is generated
     return _windows(data, _random)
 
 
-def regular_windows(data: Path) -> dict[str, Float32]:
+def regular_windows(data: Path, cache: Path) -> dict[str, Float32]:
     """h36m-rms: windows that start every 25 frames, (N, 75, 32, 3) mm an action."""
+    del cache  # nothing is generated
     return _windows(data, _regular)
 
 

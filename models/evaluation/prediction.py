@@ -1,7 +1,6 @@
 """How far predicted motion is from the true one, and whether it moves like it."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,10 +29,12 @@ class Outcome:
     errors: Float32
 
 
-def outcomes(model: Forecaster, protocol: Protocol, data: Path) -> dict[str, Outcome]:
-    """Run a model over all windows of a protocol, by action."""
+def outcomes(
+    model: Forecaster, protocol: Protocol, windows_by_action: dict[str, Float32]
+) -> dict[str, Outcome]:
+    """Run a model over the windows of a protocol, by action."""
     result = {}
-    for action, windows in protocol.windows(data).items():
+    for action, windows in windows_by_action.items():
         joints = windows[:, :, protocol.layout.joints]
         seen, true = joints[:, : protocol.seen], joints[:, protocol.seen :]
         predicted = MM * model(seen / np.float32(MM))
@@ -87,23 +88,15 @@ def figures(outcome: Outcome, protocol: Protocol) -> dict[str, Any]:
     }
 
 
-def evaluate(model: Forecaster, protocol: Protocol, data: Path) -> dict[str, Any]:
-    """Measure a model under a protocol.
-
-    Args:
-        model: What is measured.
-        protocol: How.
-        data: Folder that holds the set folders.
-
-    Returns:
-        ``average`` over the actions, ``actions`` by name, ``parameters`` and ``ms_per_window``.
-    """
-    results = outcomes(model, protocol, data)
-    return summary(model, protocol, results)
+def evaluate(
+    model: Forecaster, protocol: Protocol, windows_by_action: dict[str, Float32]
+) -> dict[str, Any]:
+    """Measure a model on the windows of a protocol, see ``summary``."""
+    return summary(model, protocol, outcomes(model, protocol, windows_by_action))
 
 
 def summary(model: Forecaster, protocol: Protocol, results: dict[str, Outcome]) -> dict[str, Any]:
-    """The figures of outcomes, rounded, with their average over the actions."""
+    """``average`` over the actions, ``actions`` by name, ``parameters``, ``ms_per_window``."""
     actions = {action: figures(outcome, protocol) for action, outcome in results.items()}
     return {
         "model": model.name,

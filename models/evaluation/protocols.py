@@ -12,7 +12,11 @@ from agent_server.errors import ConfigError
 from models.data.layouts import CMU, CORE, H36M, Layout
 from models.evaluation import h36m
 from models.evaluation.cmu import cmu_windows
-from models.evaluation.core_windows import cmu_core_windows, msrc12_core_windows
+from models.evaluation.core_windows import (
+    cmu_core_windows,
+    msrc12_core_windows,
+    synthetic_core_windows,
+)
 
 Measure = Callable[[Float32, Float32], Float32]
 """Predicted (N, F, J, 3) and true (N, F, all joints, 3) in mm -> error at each frame (F,)."""
@@ -29,7 +33,8 @@ class Protocol:
         seen: Frames of a window that a model may see; it takes the last ones that it needs.
         future: Frames that it predicts.
         horizons_ms: Where errors are reported.
-        windows: Folder of the sets -> action -> windows (N, seen + future, all joints, 3), mm.
+        windows: Folder of the sets, folder of generated recordings -> action -> windows
+            (N, seen + future, all joints, 3), mm.
         measure: Error at each frame.
         metric: What the error is, in words.
     """
@@ -40,7 +45,7 @@ class Protocol:
     seen: int
     future: int
     horizons_ms: tuple[int, ...]
-    windows: Callable[[Path], dict[str, Float32]]
+    windows: Callable[[Path, Path], dict[str, Float32]]
     measure: Measure
     metric: str
 
@@ -123,8 +128,22 @@ PROTOCOLS = {
             joint_errors(CORE.joints),
             MEAN,
         ),
+        Protocol(
+            "server-synthetic",
+            "core",
+            CORE,
+            SEEN_FRAMES,
+            PREDICTED_FRAMES,
+            SERVER_HORIZONS_MS,
+            synthetic_core_windows,
+            joint_errors(CORE.joints),
+            MEAN,
+        ),
     )
 }
+
+SERVER_PROTOCOLS = ("server", "server-msrc12", "server-synthetic")
+"""What a predictor of nine joints is measured by: CMU's test files, a Kinect, virtual people."""
 
 
 def protocol_named(name: str) -> Protocol:

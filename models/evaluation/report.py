@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from agent_server.domain.motion import SEEN_FRAMES
+from agent_server.domain.arrays import Float32
 from agent_server.synthetic.corpus import subject_names
 from models.data.splits import HELD_OUT, cmu_split, synthetic_split
 from models.data.streams import idle_streams
 from models.data.windows import Recording, cut
+from models.evaluation.forecasters import Forecaster, forecaster, names_for, zero_velocity
 from models.evaluation.gestures import (
     Classify,
     Predict,
@@ -20,8 +21,10 @@ from models.evaluation.gestures import (
     probabilities_of,
     scores,
 )
+from models.evaluation.html_report import write_report
 from models.evaluation.latency import latency_ms
-from models.evaluation.prediction import evaluate_prediction
+from models.evaluation.prediction import evaluate, gain_percent, outcomes, summary
+from models.evaluation.protocols import Protocol, protocol_named
 from models.export.session import OnnxModel
 
 IDLE_MINUTES = 40
@@ -29,16 +32,52 @@ IDLE_SEED = 901
 STRIDE = 5
 
 
-def prediction_report(model: OnnxModel, data: Path, cache: Path) -> dict[str, Any]:
-    """Errors of a predictor on held-out synthetic people and CMU's test files, and its latency."""
-    synthetic = cut(synthetic_split(cache, "test"), STRIDE)
-    mocap = cut(cmu_split(data, "test"), STRIDE)
-    one = synthetic.frames(synthetic.starts[:1] * 0)[0][:, :SEEN_FRAMES].numpy()
+def benchmark_report(model: Forecaster, windows: dict[str, dict[str, Float32]]) -> dict[str, Any]:
+    """Figures of a research model, by protocol.
+
+    Args:
+        model: What is measured.
+        windows: Protocol -> action -> windows.
+    """
     return {
-        "synthetic": evaluate_prediction(model, synthetic),
-        "cmu": evaluate_prediction(model, mocap),
-        "latency": latency_ms(model, one),
+        name: evaluate(model, protocol_named(name), by_action)
+        for name, by_action in windows.items()
     }
+
+
+def server_report(model: Forecaster, windows: dict[str, dict[str, Float32]]) -> dict[str, Any]:
+    """The same for nine joints, beside standing still: CMU's test files come first.
+
+    The figures of the other recordings lie beside them under the protocol's short name,
+    ``msrc12`` and ``synthetic``.
+    """
+    rows: dict[str, Any] = {}
+    for name, by_action in windows.items():
+        protocol = protocol_named(name)
+        row = evaluate(model, protocol, by_action)
+        still = evaluate(zero_velocity(protocol), protocol, by_action)["average"]["mpjpe"]
+        row |= {
+            "zero_velocity": still,
+            "gain_percent": gain_percent(row["average"]["mpjpe"], still),
+        }
+        rows |= row if name == "server" else {name.removeprefix("server-"): row}
+    return rows
+
+
+def compare(
+    model: Forecaster,
+    protocol: Protocol,
+    data: Path,
+    windows: dict[str, Float32],
+    folder: Path,
+) -> Path:
+    """Write an HTML page that shows a model beside all others at hand for the protocol."""
+    others = [name for name in names_for(protocol) if name != model.name]
+    # The page speaks of the first one.
+    models = [model, *(forecaster(name, protocol, data) for name in others)]
+    results = {each.name: outcomes(each, protocol, windows) for each in models}
+    summaries = {each.name: summary(each, protocol, results[each.name]) for each in models}
+    return write_report(folder, protocol, results, summaries)
 
 
 def gesture_report(

@@ -19,20 +19,27 @@ from agent_server.inference.manifest import (
     MODEL_FILE,
     DataSource,
     Manifest,
+    SkeletonName,
     Training,
     read_manifest,
     write_manifest,
 )
-from models.data import cmu, synthetic
+from models.data import cmu, h36m, synthetic
 from models.export.onnx import OPSET, check_parity, is_batch_exact, write_onnx
 from models.export.session import OnnxModel
 
 GOLDEN_ROWS = 6
 LICENCE = "Apache-2.0"
-SOURCES = [
-    DataSource(synthetic.SOURCE, synthetic.LICENCE, synthetic=True),
-    DataSource(cmu.SOURCE, cmu.LICENCE, synthetic=False),
-]
+RESEARCH_LICENCE = "research only: the training set is for academic evaluation"
+CMU_SOURCE = DataSource(cmu.SOURCE, cmu.LICENCE, synthetic=False)
+SERVER_SOURCES = (DataSource(synthetic.SOURCE, synthetic.LICENCE, synthetic=True), CMU_SOURCE)
+SOURCES = {
+    "server": SERVER_SOURCES,
+    "cmu": (CMU_SOURCE,),
+    "core": (CMU_SOURCE,),
+    "h36m": (DataSource(h36m.SOURCE, h36m.LICENCE, synthetic=False),),
+}
+"""What a model was trained on, by the name in its configuration."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,10 +51,12 @@ class Export:
         version: Version of the model.
         task: ``predict`` or ``classify``.
         network: In evaluation mode, on the CPU.
-        windows: Held-out inputs (N, frames, 9, 3), at least 16, to check and for the goldens.
+        windows: Held-out inputs (N, frames, J, 3), at least 16, to check and for the goldens.
         output_frames: Frames it gives, 0 for a classifier.
         labels: Class names, empty for a predictor.
         info: What the training run says about itself.
+        sources: What it was trained on.
+        skeleton: Name of the joints.
     """
 
     name: str
@@ -58,6 +67,14 @@ class Export:
     output_frames: int
     labels: tuple[str, ...]
     info: dict[str, Any]
+    sources: tuple[DataSource, ...] = SERVER_SOURCES
+    skeleton: SkeletonName = "core9"
+
+    @property
+    def licence(self) -> str:
+        """Licence of the weights: that of the strictest set."""
+        free = all(source.licence != h36m.LICENCE for source in self.sources)
+        return LICENCE if free else RESEARCH_LICENCE
 
 
 def write_bundle(
@@ -99,21 +116,21 @@ def write_bundle(
             name=export.name,
             version=export.version,
             task=export.task,
-            skeleton="core9",
+            skeleton=export.skeleton,
             rate_hz=RATE_HZ,
             input_frames=export.windows.shape[1],
             output_frames=export.output_frames,
             labels=list(export.labels),
-            normaliser="navel_last_seen",
+            normaliser="navel_last_seen" if export.skeleton == "core9" else "root",
             opset=OPSET,
             parameters=sum(p.numel() for p in export.network.parameters()),
             batch_exact=is_batch_exact(model, export.windows),
             files={},
-            licence=LICENCE,
+            licence=export.licence,
             training=Training(
                 command=export.info["command"],
                 seed=export.info["seed"],
-                data=SOURCES,
+                data=list(export.sources),
                 wall_s=export.info["wall_s"],
                 hardware=export.info["hardware"],
             ),

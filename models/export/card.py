@@ -6,13 +6,21 @@ from typing import Any
 from agent_server.config import DecideSettings
 from agent_server.domain.gesture import GESTURES
 from agent_server.inference.manifest import Manifest
-from models.evaluation.prediction import HORIZONS_MS
 
 _DECIDE = DecideSettings()
 
 SETS = {
-    "synthetic": "synthetic people that no split of the training has seen",
+    "server": "CMU motion capture, the published test files",
+    "server-msrc12": "MSRC-12, Kinect recordings that are for evaluation only",
+    "server-synthetic": "synthetic people that no split of the training has seen",
     "cmu": "CMU motion capture, the published test files",
+    "h36m-256": "Human3.6M, 256 windows of each complete action of S5 (`h36m-256`)",
+    "h36m-rms": "Human3.6M, the complete actions of S5, root mean square (`h36m-rms`)",
+}
+FAMILIES = {
+    "ma_wgan": "A generator trained with a critic on tangent vectors of spheres of square-root "
+    "velocity functions (manifold-aware Wasserstein GAN).",
+    "simlpe": "siMLPe (Back to MLP): linear maps over the DCT of the past.",
 }
 GESTURE_ROWS = {
     "1s+2s_predicted": "1 s seen, 2 s predicted (as it runs)",
@@ -24,25 +32,36 @@ GESTURE_ROWS = {
 
 def predictor_card(manifest: Manifest) -> str:
     """The card of a predictor."""
-    results = manifest.results
+    origin = (
+        "the navel of the last seen frame, axes of the camera frame"
+        if manifest.normaliser == "navel_last_seen"
+        else "the root, which neither moves nor turns"
+    )
+    seconds = manifest.output_frames / manifest.rate_hz
+    past = manifest.input_frames / manifest.rate_hz
+    family = manifest.training.command.split()[4]
     lines = [
-        _head(manifest, "Predicts two seconds of motion from the last one."),
-        "Input `seen` (B, 25, 9, 3), output `future` (B, 50, 9, 3), float32: metres, origin at "
-        "the navel of the last seen frame, axes of the camera frame, 25 Hz.",
+        _head(manifest, f"Predicts {seconds:g} s of motion from the last {past:g} s."),
+        f"Input `seen` (B, {manifest.input_frames}, J, 3), output `future` "
+        f"(B, {manifest.output_frames}, J, 3), float32, the joints of {manifest.skeleton}: "
+        f"metres, origin at {origin}, {manifest.rate_hz} Hz.",
         "",
-        "A generator trained with a critic on tangent vectors of the sphere of square-root "
-        "velocity functions (manifold-aware Wasserstein GAN); log map, exp map and integration "
-        "from the last seen pose are inside the graph.",
+        FAMILIES[family],
         "",
         "## Measured",
-        "Mean distance of the nine joints from the truth in mm (MPJPE) at each horizon; the "
-        "truth is the motion without sensor noise. *Zero velocity* repeats the last seen pose.",
     ]
-    for name, words in SETS.items():
-        lines += ["", f"On {words} ({results[name]['windows']} windows):", ""]
-        lines += _horizon_table(results[name])
-        lines += ["", _motion_line(results[name])]
+    for row in _measured(manifest.results):
+        words = f"On {SETS[row['protocol']]}, {row['windows']} windows, {row['metric']}:"
+        lines += ["", words, "", *_horizon_table(row), "", _motion_line(row["average"])]
     return "\n".join([*lines, "", *_tail(manifest)])
+
+
+def _measured(results: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The rows of all protocols; the server's own has the others inside."""
+    nested: list[Mapping[str, Any]] = [
+        row for row in results.values() if isinstance(row, dict) and "protocol" in row
+    ]
+    return [results, *nested] if "protocol" in results else nested
 
 
 def classifier_card(manifest: Manifest) -> str:
@@ -109,20 +128,24 @@ def _head(manifest: Manifest, sentence: str) -> str:
 
 def _horizon_table(row: Mapping[str, Any]) -> list[str]:
     def cells(values: Mapping[str, float]) -> str:
-        return " | ".join(f"{values[str(ms)]:.1f}" for ms in HORIZONS_MS)
+        return " | ".join(f"{value:.1f}" for value in values.values())
 
-    return [
-        "| | " + " | ".join(f"{ms} ms" for ms in HORIZONS_MS) + " |",
-        "|---" * (len(HORIZONS_MS) + 1) + "|",
-        f"| this model | {cells(row['mpjpe'])} |",
-        f"| zero velocity | {cells(row['zero_velocity'])} |",
+    errors = row["average"]["mpjpe"]
+    lines = [
+        "| | " + " | ".join(f"{ms} ms" for ms in errors) + " |",
+        "|---" * (len(errors) + 1) + "|",
+        f"| this model | {cells(errors)} |",
     ]
+    if "zero_velocity" in row:
+        lines.append(f"| zero velocity (the last pose repeated) | {cells(row['zero_velocity'])} |")
+    return lines
 
 
 def _motion_line(row: Mapping[str, Any]) -> str:
     return (
         f"It moves {row['mpjs_mm']} mm a frame where the truth moves {row['true_mpjs_mm']}; its "
-        f"first step is {row['jump_mm']} mm; bones deviate by {row['bone_error_mm']} mm."
+        f"first step is {row['jump_mm']} mm where the truth's is {row['true_jump_mm']}; bones "
+        f"deviate by {row['bone_error_mm']} mm."
     )
 
 
@@ -150,10 +173,23 @@ def _tail(manifest: Manifest) -> list[str]:
         f"- seed {training.seed}, {training.wall_s / 60:.0f} minutes on {training.hardware}",
         "- the checkpoint was chosen on validation people and recordings",
         "",
-        "The synthetic motion is made up by a program. It says nothing yet about how the model "
-        "does on real people performing these gestures.",
+        _caveat(manifest),
         "",
     ]
+
+
+def _caveat(manifest: Manifest) -> str:
+    if manifest.licence.startswith("research only"):
+        return (
+            "Research only: these weights may be used to check the figures above and for nothing "
+            "else. They are part of neither the wheel nor the image."
+        )
+    if any(source.synthetic for source in manifest.training.data):
+        return (
+            "The synthetic motion is made up by a program. It says nothing yet about how the "
+            "model does on real people performing these gestures."
+        )
+    return "A baseline to compare with; the server does not run it."
 
 
 def _origin(synthetic: bool) -> str:

@@ -114,6 +114,21 @@ class TrainConfig:
     synthetic_sequences: int = 2_000
 
 
+SERVER = TrainConfig(
+    network=NetworkConfig(output="curve"),
+    steps=10_000,
+    batch=128,
+    learning_rate=2.5e-3,
+    adversarial=0.01,
+    reconstruction=0.05,
+    skeleton=1.0,
+    bones=1.0,
+    length=0.01,
+    velocity=20.0,
+    near=0.5,
+    ema=0.999,
+)
+
 BEST = TrainConfig(
     network=NetworkConfig(
         seen=50,
@@ -168,7 +183,7 @@ PAPER = TrainConfig(
 )
 
 CONFIGS: dict[str, TrainConfig] = {
-    "server": TrainConfig(),
+    "server": SERVER,
     "best": BEST,
     "best_cmu": replace(BEST, network=replace(BEST.network, joints=25), data="cmu"),
     "paper": PAPER,

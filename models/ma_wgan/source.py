@@ -1,6 +1,5 @@
 """Where the predictor's batches come from."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple, Protocol
@@ -15,7 +14,7 @@ from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import HALF_QUARTER_TURN, Augmentation, WindowSet, augment, cut
 from models.ma_wgan.config import TrainConfig
 
-AUGMENTATION = Augmentation(yaw=HALF_QUARTER_TURN, scale=0.1, noise_m=0.015, drop=0.05)
+AUGMENTATION = Augmentation(yaw=HALF_QUARTER_TURN, scale=0.1, noise_m=0.005, drop=0.05)
 SYNTHETIC_SHARE = 0.6
 VALIDATION_STRIDE = 40
 SCALE = 0.05
@@ -54,24 +53,25 @@ class SensorSource:
     """Windows of virtual people as sensors see them, and of motion capture: nine joints.
 
     Attributes:
-        training: Share of each batch, and the windows that it is drawn from.
+        synthetic: Windows of virtual people.
+        mocap: Windows of motion capture, of which half run backwards.
         validation: Windows by name.
         layout: The nine core joints.
     """
 
-    training: Sequence[tuple[float, WindowSet]]
+    synthetic: WindowSet
+    mocap: WindowSet
     validation: dict[str, Windows]
     layout: Layout = CORE
 
     def draw(self, count: int, generator: torch.Generator) -> Windows:
-        """An augmented batch, each set with its share."""
-        parts = []
-        total = sum(share for share, _ in self.training)
-        for share, windows in self.training:
-            some = max(1, round(count * share / total))
-            parts.append(windows.frames(torch.randint(len(windows), (some,), generator=generator)))
-        observed = torch.cat([part[0] for part in parts])
-        clean = torch.cat([part[1] for part in parts])
+        """An augmented batch, three in five of virtual people."""
+        virtual = max(1, round(count * SYNTHETIC_SHARE))
+        observed, clean = _some(self.synthetic, virtual, generator)
+        captured, _ = _some(self.mocap, max(1, count - virtual), generator)
+        # What people did may as well run backwards; a sensor's failures may not.
+        captured = reverse_some(captured, generator)
+        observed, clean = torch.cat([observed, captured]), torch.cat([clean, captured])
         return split(*augment(observed, clean, AUGMENTATION, generator))
 
 
@@ -98,6 +98,12 @@ class ClipSource:
         scale = 1 + SCALE * (2 * torch.rand(count, 1, 1, 1, generator=generator) - 1)
         motion = motion * scale
         return Windows(motion[:, : self.seen], motion[:, self.seen :])
+
+
+def _some(
+    windows: WindowSet, count: int, generator: torch.Generator
+) -> tuple[torch.Tensor, torch.Tensor]:
+    return windows.frames(torch.randint(len(windows), (count,), generator=generator))
 
 
 def split(observed: torch.Tensor, clean: torch.Tensor) -> Windows:
@@ -128,9 +134,9 @@ def make_source(config: TrainConfig, data: Path, cache: Path) -> Source:
             {config.data: Windows(held[:, : network.seen], held[:, network.seen :])},
             motions.layout,
         )
-    synthetic = cut(synthetic_split(cache, "train", config.synthetic_sequences))
     return SensorSource(
-        [(SYNTHETIC_SHARE, synthetic), (1 - SYNTHETIC_SHARE, cut(cmu_split(data, "train")))],
+        cut(synthetic_split(cache, "train", config.synthetic_sequences)),
+        cut(cmu_split(data, "train")),
         {
             "synthetic": whole(cut(synthetic_split(cache, "validation"), stride=25)),
             "cmu": whole(cut(cmu_split(data, "validation"), stride=5)),
