@@ -13,6 +13,7 @@ from agent_server.errors import AgentServerError
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import cut, join
+from models.evaluation.ablations import ablation_report
 from models.evaluation.forecasters import SERVER_BUNDLE, bundled, forecaster
 from models.evaluation.latency import bundle_latency
 from models.evaluation.prediction import evaluate
@@ -238,6 +239,22 @@ def evaluate_gestures(
         _show(msrc12_stream_report(classify.batched, predict.batched, data), as_json)
     else:
         _show(classifier_report(classify, predict, data, cache), as_json)
+
+
+@app.command()
+def ablate(
+    data: DataOption,
+    out: OutOption,
+    seed: SeedOption = 0,
+    as_json: JsonOption = False,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Train each ablation of the predictor on the same small budget, and measure it.
+
+    Rows whose run is already in --out are only measured again.
+    """
+    torch.set_num_threads(1)
+    _show(ablation_report(out, seed, data, cache), as_json)
 
 
 @app.command()

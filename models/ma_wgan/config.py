@@ -29,6 +29,7 @@ class NetworkConfig:
         channels: Width of the mixer, or of the first convolution.
         blocks: Number of mixer blocks.
         coefficients: Lowest DCT coefficients of the future that the mixer gives.
+        dropout: Share of the mixer's hidden channels that training leaves out.
         critic_channels: Width of the critic.
         critic_poses: Show the critic the poses beside the tangent vectors.
         log_clip: The authors' clipping of the cosine in the log map at 0.98; None for none.
@@ -47,6 +48,7 @@ class NetworkConfig:
     channels: int = 128
     blocks: int = 8
     coefficients: int = 25
+    dropout: float = 0.0
     critic_channels: int = 64
     critic_poses: bool = True
     log_clip: float | None = None
@@ -138,11 +140,13 @@ BEST = TrainConfig(
         front=False,
         flip=True,
         blocks=12,
+        dropout=0.1,
     ),
     data="h36m",
-    steps=15_000,
+    steps=9_000,
     batch=128,
     learning_rate=2.5e-3,
+    weight_decay=0.05,
     adversarial=0.01,
     reconstruction=0.05,
     skeleton=1.0,

@@ -23,13 +23,16 @@ DECAY = 0.9
 class MixerBlock(nn.Module):
     """Mixes over time (or its DCT coefficients), then over channels, both residually."""
 
-    def __init__(self, frames: int, channels: int, half: bool = False) -> None:
+    def __init__(
+        self, frames: int, channels: int, dropout: float = 0.0, half: bool = False
+    ) -> None:
         super().__init__()
         self.in_half = half
         self.time_norm = nn.LayerNorm(channels)
         self.time = nn.Linear(frames, frames)
         self.channel_norm = nn.LayerNorm(channels)
         self.channel_in = nn.Linear(channels, channels)
+        self.dropout = nn.Dropout(dropout)
         self.channel_out = nn.Linear(channels, channels)
         nn.init.zeros_(self.time.bias)
         nn.init.normal_(self.time.weight, std=0.02)
@@ -41,6 +44,7 @@ class MixerBlock(nn.Module):
         # The weight multiplies from the left, so that no transpose is needed.
         x = x + product(self.time.weight, self.time_norm(x), half) + self.time.bias[:, None]
         hidden = torch.relu(dense(self.channel_norm(x), self.channel_in, half))
+        hidden = self.dropout(hidden)
         return x + dense(hidden, self.channel_out, half).float()
 
 
@@ -74,7 +78,8 @@ class Mixer(nn.Module):
         self.embed = nn.Linear(3 * coordinates, config.channels)
         self.noise = nn.Linear(config.noise, config.channels, bias=False) if config.noise else None
         self.blocks = nn.ModuleList(
-            MixerBlock(config.seen, config.channels, half) for _ in range(config.blocks)
+            MixerBlock(config.seen, config.channels, config.dropout, half)
+            for _ in range(config.blocks)
         )
         self.norm = nn.LayerNorm(config.channels)
         self.stretch = nn.Linear(config.seen, config.coefficients)

@@ -105,11 +105,15 @@ class Spheres(nn.Module):
 
 
 def karcher_means(poses: torch.Tensor, spheres: Literal["body", "joints"]) -> torch.Tensor:
-    """Reference point of motions (N, T + 1, C): the mean of those that move, shape (S, D)."""
+    """Reference point of motions (N, T + 1, C): the mean of those that move, shape (S, D).
+
+    A joint that never moves gets a steady walk along the diagonal: any point would do.
+    """
     point, length = srvf.to_sphere(curves(poses.double(), spheres))
     enough = 10 * MOVING_M * point.shape[-1] / 3
     means = []
     for one, long in zip(point.flatten(2).unbind(1), length.unbind(1), strict=True):
-        moving = one[long > min(enough, float(long.median()))]
-        means.append(sphere.karcher_mean(moving))
+        moving = one[(long >= min(enough, float(long.median()))) & (long > MOVING_M)]
+        steady = torch.full_like(one[0], one.shape[1] ** -0.5)
+        means.append(sphere.karcher_mean(moving) if len(moving) else steady)
     return torch.stack(means).float()

@@ -7,6 +7,8 @@ import torch
 import torch.nn.functional as F
 
 TINY = 1e-12
+FLAT = 1e-5
+"""Added to a sine at right angles. Much less than this is zero to the exporter."""
 NEAR = 1e-4
 """Below this angle in radians the series replace the quotients, which lose all digits."""
 LANES = 16
@@ -60,7 +62,7 @@ def log(point: torch.Tensor, base: torch.Tensor, clip: float | None = None) -> t
     if clip is not None:
         angle = torch.acos(cosine.clamp(-clip, clip))
         return angle / torch.sin(angle) * across
-    sine = torch.sqrt(_dot(across, across) + TINY**2)
+    sine = torch.sqrt(_dot(across, across) + FLAT**2)
     return torch.atan2(sine, cosine) / sine * across
 
 

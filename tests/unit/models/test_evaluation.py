@@ -6,6 +6,7 @@ torch = pytest.importorskip("torch", reason="needs the train extra")
 from agent_server.domain.gesture import GESTURES, IDLE  # noqa: E402
 from agent_server.domain.skeleton import CoreJoint  # noqa: E402
 from models.data.windows import Recording  # noqa: E402
+from models.evaluation.forecasters import Forecaster, zero_velocity  # noqa: E402
 from models.evaluation.gestures import (  # noqa: E402
     calibration_error,
     decisions,
@@ -15,7 +16,8 @@ from models.evaluation.gestures import (  # noqa: E402
     scores,
     sliding_seen,
 )
-from models.evaluation.prediction import bone_error, horizon_errors, mean_step  # noqa: E402
+from models.evaluation.prediction import evaluate, gain_percent, joint_speed  # noqa: E402
+from models.evaluation.protocols import protocol_named  # noqa: E402
 
 
 def rows(*names: str, level: float = 0.9) -> np.ndarray:
@@ -24,21 +26,84 @@ def rows(*names: str, level: float = 0.9) -> np.ndarray:
     return out
 
 
+SERVER = protocol_named("server")
+
+
+def walking_on(count: int = 3) -> np.ndarray:
+    """Windows in mm in which every joint of a rigid body moves by 1 mm a frame."""
+    pose = 300 * np.random.default_rng(0).standard_normal((1, 1, 9, 3))
+    motion = np.repeat(np.repeat(pose, 75, axis=1), count, axis=0).astype(np.float32)
+    motion[..., 0] += np.arange(75)[None, :, None]
+    return motion
+
+
+def knows(scale: float = 1.0) -> Forecaster:
+    """Goes on as fast as it went, times ``scale``."""
+
+    def predict(seen: np.ndarray) -> np.ndarray:
+        step = seen[:, -1:] - seen[:, -2:-1]
+        return seen[:, -1:] + scale * step * np.arange(1, 51)[None, :, None, None]
+
+    return Forecaster("knows", predict, 25, 9, 0)
+
+
 def test_horizons_are_the_frames_at_40_ms() -> None:
-    true = np.zeros((2, 50, 9, 3), dtype=np.float32)
-    predicted = true.copy()
-    predicted[..., 0] = np.arange(1, 51)[None, :, None] / 1000  # mm equals the frame's number
-    assert horizon_errors(predicted, true) == {
+    result = evaluate(zero_velocity(SERVER), SERVER, {"walk": walking_on()})
+    assert result["average"]["mpjpe"] == {
         "80": 2, "160": 4, "320": 8, "400": 10, "560": 14, "1000": 25, "1500": 37, "2000": 50,
     }  # fmt: skip
-    np.testing.assert_allclose(mean_step(true[:, :1], predicted), 1.0, atol=1e-4)
+    assert result["windows"] == 3
 
 
-def test_bones_are_compared_with_the_last_seen_ones() -> None:
-    pose = np.random.default_rng(0).standard_normal((1, 1, 9, 3)).astype(np.float32)
-    seen, future = np.repeat(pose, 25, axis=1), np.repeat(pose, 50, axis=1)
-    assert bone_error(future + 0.4, seen) == pytest.approx(0.0, abs=1e-3)
-    assert bone_error(2 * future, seen) > 100
+def test_speed_and_jump_are_set_against_the_truth() -> None:
+    right = evaluate(knows(), SERVER, {"walk": walking_on()})["average"]
+    assert max(right["mpjpe"].values()) < 0.05
+    assert right["mpjs_error"] < 0.01
+    fast = evaluate(knows(3.0), SERVER, {"walk": walking_on()})["average"]
+    assert fast["mpjs_error"] == pytest.approx(2.0, abs=0.02)
+    assert (fast["jump_mm"], fast["true_jump_mm"]) == (
+        pytest.approx(3.0, abs=0.02),
+        pytest.approx(1.0, abs=0.02),
+    )
+
+
+def test_actions_count_alike_whatever_their_number_of_windows() -> None:
+    windows = {"walk": walking_on(9), "stand": np.repeat(walking_on(1)[:, :1], 75, axis=1)}
+    result = evaluate(zero_velocity(SERVER), SERVER, windows)
+    assert result["actions"]["walk"]["mpjpe"]["80"] == 2
+    assert result["average"]["mpjpe"]["80"] == 1
+
+
+def test_bones_are_compared_with_the_true_ones() -> None:
+    def grows(seen: np.ndarray) -> np.ndarray:
+        return np.repeat(2 * seen[:, -1:], 50, axis=1)
+
+    swollen = evaluate(Forecaster("grows", grows, 1, 9, 0), SERVER, {"walk": walking_on()})
+    assert swollen["average"]["bone_error_mm"] > 100
+    assert evaluate(knows(), SERVER, {"walk": walking_on()})["average"]["bone_error_mm"] < 0.01
+
+
+def test_a_model_may_need_less_than_the_protocol_shows() -> None:
+    lengths = []
+
+    def predict(seen: np.ndarray) -> np.ndarray:
+        lengths.append(seen.shape[1])
+        return np.repeat(seen[:, -1:], 50, axis=1)
+
+    Forecaster("short", predict, 10, 9, 0)(walking_on()[:, :25])
+    assert lengths == [10]
+
+
+def test_the_speed_starts_with_the_step_from_the_last_seen_pose() -> None:
+    start, future = np.zeros((1, 1, 9, 3), np.float32), np.ones((1, 4, 9, 3), np.float32)
+    np.testing.assert_allclose(joint_speed(start, future), [3**0.5, 0, 0, 0], rtol=1e-6)
+
+
+def test_a_gain_is_what_is_left_of_the_baseline() -> None:
+    assert gain_percent({"80": 8.0, "160": 11.0}, {"80": 10.0, "160": 10.0}) == {
+        "80": 20.0,
+        "160": -10.0,
+    }
 
 
 def test_a_decision_takes_three_sure_windows_in_a_row() -> None:

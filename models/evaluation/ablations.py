@@ -1,0 +1,71 @@
+"""Training and measuring the ablations of the predictor."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import nn
+
+from agent_server.domain.arrays import Float32
+from models.evaluation.forecasters import Forecaster, Predict
+from models.evaluation.prediction import figures, outcomes
+from models.evaluation.protocols import protocol_named
+from models.evaluation.recursion import recursion_errors
+from models.ma_wgan.ablations import ROWS
+from models.ma_wgan.train import load_predictor, train
+from models.training.run import INFO, Run
+
+PROTOCOL = "h36m-256"
+CHUNK = 512
+
+
+def ablation_report(folder: Path, seed: int, data: Path, cache: Path) -> dict[str, Any]:
+    """Average figures of every row under ``h36m-256``, and the recursion of the first.
+
+    Args:
+        folder: Where the runs are kept, one folder a row.
+        seed: Of every training.
+        data: Folder that holds the set folders.
+        cache: Folder of generated recordings.
+    """
+    protocol = protocol_named(PROTOCOL)
+    windows = protocol.windows(data, cache)
+    rows: dict[str, Any] = {}
+    for name, config in ROWS.items():
+        place = folder / name.replace(" ", "_").replace(",", "")
+        if not (place / INFO).exists():
+            train(
+                config,
+                Run(place, config, seed, f"python -m models ablate ({name})", False),
+                data,
+                cache,
+            )
+        network = load_predictor(place)
+        model = Forecaster(name, in_numpy(network), config.network.seen, config.network.joints, 0)
+        results = outcomes(model, protocol, windows)
+        actions = [figures(outcome, protocol) for outcome in results.values()]
+        rows[name] = {
+            "mpjpe": {
+                ms: round(float(np.mean([row["mpjpe"][ms] for row in actions])), 2)
+                for ms in actions[0]["mpjpe"]
+            },
+            **{
+                key: round(float(np.mean([row[key] for row in actions])), 2)
+                for key in ("mpjs_error", "jump_mm", "bone_error_mm")
+            },
+        }
+        if name == "all":
+            rows[name]["recursion"] = recursion_errors(network, config.network.seen, data)
+    return rows
+
+
+def in_numpy(network: nn.Module, chunk: int = CHUNK) -> Predict:
+    """A network of torch as a function of arrays."""
+
+    @torch.no_grad()
+    def predict(seen: Float32) -> Float32:
+        parts = [network(part).numpy() for part in torch.from_numpy(seen).split(chunk)]
+        return np.concatenate(parts)
+
+    return predict
