@@ -85,11 +85,12 @@ def train_simlpe(
     seed: SeedOption = 0,
     resume: ResumeOption = False,
     steps: StepsOption = None,
+    cache: CacheOption = CACHE,
 ) -> None:
     """Train siMLPe, the baseline of the literature."""
     chosen = _configured(SIMLPE_CONFIGS, config, steps)
     run = Run(out, chosen, seed, _command("simlpe", config, seed, steps), resume)
-    train_baseline(chosen, run, data)
+    train_baseline(chosen, run, data, cache)
 
 
 @train_app.command("interformer")

@@ -9,6 +9,7 @@ from torch import nn
 
 from agent_server.domain.arrays import Float32
 from models.evaluation.forecasters import Forecaster, Predict
+from models.evaluation.futures import futures_figures
 from models.evaluation.prediction import figures, outcomes
 from models.evaluation.protocols import protocol_named
 from models.evaluation.recursion import recursion_errors
@@ -57,6 +58,9 @@ def ablation_report(folder: Path, seed: int, data: Path, cache: Path) -> dict[st
         }
         if name == "all":
             rows[name]["recursion"] = recursion_errors(network, config.network.seen, data)
+        if config.network.noise:
+            drawn = futures_figures(network, windows, protocol.layout.joints, seed)
+            rows[name]["futures"] = drawn
     return rows
 
 

@@ -33,16 +33,21 @@ LOSSES = (
 OBSERVED = (5, 10, 15, 25)
 
 
+def _without(loss: str) -> TrainConfig:
+    return replace(BASE, **{loss: 0.0})  # type: ignore[arg-type]
+
+
 def _with(**changes: object) -> TrainConfig:
     return replace(BASE, network=replace(BASE.network, **changes))  # type: ignore[arg-type]
 
 
 ROWS: dict[str, TrainConfig] = {
     "all": BASE,
-    **{f"without {name}": replace(BASE, **{name: 0.0}) for name in LOSSES},
+    **{f"without {name}": _without(name) for name in LOSSES},
     **{f"{frames} frames seen": _with(seen=frames) for frames in OBSERVED},
     "one sphere for the body": _with(spheres="body"),
     "lengths not predicted": _with(length=False),
+    "16 numbers of noise": _with(noise=16),
     "the curve itself out": _with(output="curve"),
     "the curve itself out, without reconstruction and critic": replace(
         _with(output="curve"), reconstruction=0.0, adversarial=0.0

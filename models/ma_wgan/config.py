@@ -85,6 +85,8 @@ class TrainConfig:
         length: Weight of the logarithm of the curves' lengths; not in the paper.
         position: Weight of the joints' distance in metres; not in the paper.
         velocity: Weight of the distance of the steps in metres a frame; not in the paper.
+        spread: Weight of the distance between drawn futures, where there is noise; not in the
+            paper.
         near: Position and velocity of the t-th future frame weigh t to the power of minus this,
             so that the small errors of the first frames count beside the large ones of the last.
         penalty: Weight of the gradient penalty.
@@ -108,6 +110,7 @@ class TrainConfig:
     length: float = 0.1
     position: float = 20.0
     velocity: float = 50.0
+    spread: float = 10.0
     near: float = 0.0
     penalty: float = 10.0
     ema: float = 0.998

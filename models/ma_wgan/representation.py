@@ -46,6 +46,27 @@ class Forecast(NamedTuple):
     poses: torch.Tensor
 
 
+class Target(NamedTuple):
+    """What the generator sees and ought to give; everything faces the front if it should.
+
+    Attributes:
+        seen: Shape (B, seen, C), metres, as the sensor saw it.
+        future: Shape (B, future, C), metres, without sensor noise.
+    """
+
+    seen: torch.Tensor
+    future: torch.Tensor
+
+    @property
+    def start(self) -> torch.Tensor:
+        """The last seen pose, (B, 1, C)."""
+        return self.seen[:, -1:]
+
+    def curve(self) -> torch.Tensor:
+        """The future and the pose that it starts from, (B, future + 1, C)."""
+        return torch.cat([self.start, self.future], dim=1)
+
+
 def curves(poses: torch.Tensor, spheres: Literal["body", "joints"]) -> torch.Tensor:
     """Poses (B, T, C) as one curve for the body, (B, 1, T, C), or a joint each, (B, J, T, 3)."""
     if spheres == "body":

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import torch
 from torch import nn
@@ -10,9 +10,9 @@ from torch import nn
 from models.data.layouts import Layout
 from models.ma_wgan.config import NetworkConfig, TrainConfig
 from models.ma_wgan.critic import make_critic
+from models.ma_wgan.futures import spread_of_futures
 from models.ma_wgan.network import Flipped, Predictor
-from models.ma_wgan.representation import Forecast, Point, karcher_means
-from models.ma_wgan.source import Source, Windows, make_source
+from models.ma_wgan.representation import Forecast, Point, Target, karcher_means
 from models.ops.heading import heading, to_front
 from models.ops.losses import (
     bone_loss,
@@ -22,34 +22,15 @@ from models.ops.losses import (
     near_weights,
 )
 from models.training.ema import Ema
+from models.training.errors import validation_errors
 from models.training.fit import fit, training_device
 from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
+from models.training.source import Source, Windows, make_source
 
 REFERENCE_WINDOWS = 4_000
 GRAM_EVERY = 5
 """The Gram matrices of every fifth frame say the same as all of them."""
-
-
-class Target(NamedTuple):
-    """What the generator sees and ought to give; everything faces the front if it should.
-
-    Attributes:
-        seen: Shape (B, seen, C), metres, as the sensor saw it.
-        future: Shape (B, future, C), metres, without sensor noise.
-    """
-
-    seen: torch.Tensor
-    future: torch.Tensor
-
-    @property
-    def start(self) -> torch.Tensor:
-        """The last seen pose, (B, 1, C)."""
-        return self.seen[:, -1:]
-
-    def curve(self) -> torch.Tensor:
-        """The future and the pose that it starts from, (B, future + 1, C)."""
-        return torch.cat([self.start, self.future], dim=1)
 
 
 def make_target(windows: Windows, front: bool) -> Target:
@@ -103,21 +84,6 @@ def centred(poses: torch.Tensor) -> torch.Tensor:
     return some - some.mean(dim=2, keepdim=True)
 
 
-@torch.no_grad()
-def position_error(network: nn.Module, windows: Windows, device: torch.device) -> float:
-    """Mean distance of predicted and true joints over all windows and frames, in mm."""
-    total = 0.0
-    for seen, true in zip(windows.seen.split(512), windows.future.split(512), strict=True):
-        future = network(seen.to(device)).cpu()
-        total += float((future - true).norm(dim=-1).mean(dim=(1, 2)).sum())
-    return 1000 * total / len(windows.seen)
-
-
-def stand_still_error(windows: Windows) -> float:
-    """The same for a prediction that repeats the last pose, in mm."""
-    return 1000 * float((windows.seen[:, -1:] - windows.future).norm(dim=-1).mean())
-
-
 class PredictorLearner:
     """Generator, critic, and what updates them."""
 
@@ -148,8 +114,16 @@ class PredictorLearner:
         self.network.train()
         forecast = self.network.forecast(target.seen)
         terms = generator_terms(forecast, target, true, self.source.layout, self.weights)
-        real = (true.tangent, target.future - target.start)
-        fake = (forecast.point.tangent, forecast.poses - target.start)
+        real: tuple[torch.Tensor, ...] = (true.tangent, target.future - target.start)
+        fake: tuple[torch.Tensor, ...] = (forecast.point.tangent, forecast.poses - target.start)
+        if config.network.noise:
+            drawn, terms["spread"] = spread_of_futures(self.network, target, forecast, generator)
+            starts = target.start[: len(drawn.poses) // 2].repeat_interleave(2, 0)
+            fake = (
+                torch.cat([fake[0], drawn.point.tangent]),
+                torch.cat([fake[1], drawn.poses - starts]),
+            )
+            real = tuple(torch.cat([part, part[: len(drawn.poses)]]) for part in real)
         if config.adversarial:
             terms["adversarial"] = -self.critic(*fake).mean()
         loss = torch.stack([getattr(config, name) * term for name, term in terms.items()]).sum()
@@ -177,14 +151,8 @@ class PredictorLearner:
         self.critic_optimizer.step()
 
     def validate(self) -> dict[str, float]:
-        """Errors in mm by name; the score is their mean, each over that of standing still."""
-        held = self.source.validation
-        errors = {
-            name: position_error(self.ema.network, windows, self.device)
-            for name, windows in held.items()
-        }
-        shares = [errors[name] / stand_still_error(windows) for name, windows in held.items()]
-        return {"score": sum(shares) / len(shares), **errors}
+        """Errors in mm by name, and the score."""
+        return validation_errors(self.ema.network, self.source.validation, self.device)
 
     def best(self) -> dict[str, Any]:
         """The averaged weights."""
@@ -222,7 +190,8 @@ def train(config: TrainConfig, run: Run, data: Path, cache: Path) -> None:
         data: Folder that holds the set folders.
         cache: Folder of generated recordings.
     """
-    train_on(config, run, make_source(config, data, cache))
+    seen, sequences = config.network.seen, config.synthetic_sequences
+    train_on(config, run, make_source(config.data, seen, data, cache, sequences=sequences))
 
 
 def train_on(config: TrainConfig, run: Run, source: Source) -> None:

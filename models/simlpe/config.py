@@ -1,6 +1,6 @@
 """Configurations of siMLPe."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from agent_server.errors import ConfigError
 
@@ -37,7 +37,7 @@ class TrainConfig:
 
     Attributes:
         network: Shape of the network.
-        data: ``h36m``, ``cmu`` or ``core``: which set, and with it which joints.
+        data: ``h36m``, ``cmu`` or ``server``: which set, and with it which joints.
         steps: Updates.
         batch: Windows an update.
         learning_rate: The highest rate.
@@ -48,6 +48,7 @@ class TrainConfig:
         ema: Decay of the averaged weights, 0 for none.
         half: Multiply in bfloat16, which is exact enough and twice as fast on recent CPUs.
         validate_every: Updates between two validations.
+        synthetic_sequences: Takes of virtual people to train on.
     """
 
     network: NetworkConfig = NetworkConfig()
@@ -62,6 +63,7 @@ class TrainConfig:
     ema: float = 0.0
     half: bool = False
     validate_every: int = 1_000
+    synthetic_sequences: int = 2_000
 
 
 CPU = TrainConfig(
@@ -74,4 +76,14 @@ CPU = TrainConfig(
     validate_every=500,
 )
 
-CONFIGS: dict[str, TrainConfig] = {"published": TrainConfig(), "cpu": CPU}
+CONFIGS: dict[str, TrainConfig] = {
+    "published": TrainConfig(),
+    "cpu": CPU,
+    "cmu": replace(CPU, network=NetworkConfig(coordinates=75), data="cmu", steps=3_000),
+    "server": replace(
+        CPU,
+        network=NetworkConfig(seen=25, step=25, future=50, coordinates=27),
+        data="server",
+        steps=6_000,
+    ),
+}

@@ -7,36 +7,22 @@ from typing import Any
 import torch
 from torch import nn
 
-from models.data.clips import Clips, reverse_some
-from models.data.sets import motion_set
 from models.ops.losses import joint_distance
 from models.simlpe.config import NetworkConfig, TrainConfig
 from models.simlpe.network import SiMlpe
 from models.training.ema import Ema
+from models.training.errors import validation_errors
 from models.training.fit import fit, training_device
 from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
-
-VALIDATION_STRIDE = 40
-VALIDATION_BATCH = 512
-
-
-@torch.no_grad()
-def mean_error(network: nn.Module, windows: torch.Tensor, seen: int) -> float:
-    """Mean joint distance over all future frames of windows (N, T, J, 3), in mm."""
-    device = next(network.parameters()).device
-    total = 0.0
-    for part in windows.split(VALIDATION_BATCH):
-        future = network(part[:, :seen].to(device)).cpu()
-        total += float((future - part[:, seen:]).norm(dim=-1).mean(dim=(1, 2)).sum())
-    return 1000 * total / len(windows)
+from models.training.source import Source, make_source
 
 
 class SiMlpeLearner:
     """One network and what updates it."""
 
-    def __init__(self, config: TrainConfig, training: Clips, validation: torch.Tensor) -> None:
-        self.config, self.training, self.validation = config, training, validation
+    def __init__(self, config: TrainConfig, source: Source) -> None:
+        self.config, self.source = config, source
         self.device = training_device()
         self.network = SiMlpe(config.network, config.half).to(self.device)
         self.ema = Ema(self.network, config.ema)
@@ -53,13 +39,11 @@ class SiMlpeLearner:
         return 1.0 if step <= config.drop_at else config.last_rate / config.learning_rate
 
     def step(self, generator: torch.Generator) -> dict[str, float]:
-        """One update on windows of which half run backwards (the published augmentation)."""
-        shape = self.config.network
-        motion = reverse_some(self.training.draw(self.config.batch, generator), generator)
-        motion = motion.to(self.device)
-        true = motion[:, shape.seen : shape.seen + shape.step]
+        """One update on the first pass."""
+        windows = self.source.draw(self.config.batch, generator)
+        true = windows.future[:, : self.config.network.step].to(self.device)
         self.network.train()
-        predicted = self.network.one_pass(motion[:, : shape.seen].flatten(2))
+        predicted = self.network.one_pass(windows.seen.to(self.device).flatten(2))
         predicted = predicted.unflatten(2, true.shape[2:])
         position = joint_distance(predicted, true)
         velocity = joint_distance(predicted.diff(dim=1), true.diff(dim=1))
@@ -72,8 +56,8 @@ class SiMlpeLearner:
         return {"position": float(position.detach()), "velocity": float(velocity.detach())}
 
     def validate(self) -> dict[str, float]:
-        """Mean joint distance over the future."""
-        return {"score": mean_error(self.ema.network, self.validation, self.config.network.seen)}
+        """Errors in mm by name, and the score."""
+        return validation_errors(self.ema.network, self.source.validation, self.device)
 
     def best(self) -> dict[str, Any]:
         """The averaged weights."""
@@ -98,23 +82,19 @@ class SiMlpeLearner:
         self.schedule.load_state_dict(state["schedule"])
 
 
-def train(config: TrainConfig, run: Run, data: Path) -> None:
-    """Train siMLPe.
+def train(config: TrainConfig, run: Run, data: Path, cache: Path) -> None:
+    """Train siMLPe. Half of the windows run backwards, the published augmentation.
 
     Args:
         config: What to do.
         run: Where to keep checkpoints; a run that was begun is gone on with.
         data: Folder that holds the set folders.
+        cache: Folder of generated recordings.
     """
     torch.manual_seed(run.info["seed"])
-    seen = config.network.seen
-    motions = motion_set(config.data)
-    learner = SiMlpeLearner(
-        config,
-        motions.clips(data, "train", seen),
-        motions.clips(data, "validation", seen, VALIDATION_STRIDE).all(),
-    )
-    fit("simlpe", learner, run, config.steps, config.validate_every)
+    seen, sequences = config.network.seen, config.synthetic_sequences
+    source = make_source(config.data, seen, data, cache, sequences=sequences, vary=False)
+    fit("simlpe", SiMlpeLearner(config, source), run, config.steps, config.validate_every)
 
 
 def load_simlpe(folder: Path) -> SiMlpe:

@@ -93,7 +93,8 @@ def _movements(comparison: Comparison, model: str, *, of_truth: bool) -> Float32
     outcomes = comparison.results[model].values()
     rows = np.concatenate([_offsets(outcome, of_truth) for outcome in outcomes])
     chosen = np.linspace(0, len(rows) - 1, min(WINDOWS, len(rows))).round().astype(int)
-    return rows[chosen]
+    kept: Float32 = rows[chosen]
+    return kept
 
 
 def _offsets(outcome: Outcome, of_truth: bool) -> Float32:

@@ -13,20 +13,19 @@ from models.ma_wgan.config import CONFIGS, NetworkConfig, TrainConfig  # noqa: E
 from models.ma_wgan.critic import make_critic  # noqa: E402
 from models.ma_wgan.network import Flipped, Predictor, carry_on, log_liveliness  # noqa: E402
 from models.ma_wgan.representation import Spheres, karcher_means  # noqa: E402
-from models.ma_wgan.source import SensorSource, Windows, whole  # noqa: E402
 from models.ma_wgan.train import (  # noqa: E402
     PredictorLearner,
     load_predictor,
     load_trained,
     make_target,
-    position_error,
     reference_point,
-    stand_still_error,
     train_on,
 )
 from models.ops.losses import gradient_penalty, near_weights  # noqa: E402
 from models.ops.sphere import log as sphere_log  # noqa: E402
+from models.training.errors import position_error, stand_still_error  # noqa: E402
 from models.training.run import Run  # noqa: E402
+from models.training.source import SensorSource, Windows, whole  # noqa: E402
 
 SMALL = NetworkConfig(channels=32, blocks=2, critic_channels=16)
 CPU = torch.device("cpu")
@@ -232,6 +231,20 @@ def test_a_few_windows_are_learnt_by_heart(output: str) -> None:
     assert last["position"] < 0.4 * first["position"]
     assert last["reconstruction"] < 0.7 * first["reconstruction"]
     assert learner.validate()["waving"] < 0.5 * stand_still_error(whole(windows))
+
+
+def test_drawn_futures_come_to_lie_as_far_apart_as_the_truth_is_away() -> None:
+    torch.manual_seed(0)
+    config = TrainConfig(network=replace(SMALL, noise=4), steps=120, batch=32, learning_rate=3e-3)
+    generator = torch.Generator().manual_seed(0)
+    one = source()
+    learner = PredictorLearner(config, one, reference_point(one, config.network, generator))
+    terms = [learner.step(generator)["spread"] for _ in range(120)]
+    assert np.mean(terms[-20:]) < 0.6 * np.mean(terms[:5])
+    seen = one.draw(8, generator).seen
+    futures = learner.network.eval().futures(seen, 2, generator)
+    apart = (futures[:, 0] - futures[:, 1]).norm(dim=-1).mean()
+    assert float(apart.detach()) > 0.002
 
 
 def test_near_frames_weigh_more_and_all_weigh_one_on_average() -> None:

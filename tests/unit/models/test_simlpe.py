@@ -8,11 +8,14 @@ torch = pytest.importorskip("torch", reason="needs the train extra")
 
 from agent_server.errors import ConfigError  # noqa: E402
 from models.data.clips import Clips, cut_clips  # noqa: E402
+from models.data.layouts import Layout  # noqa: E402
 from models.simlpe.config import CONFIGS, NetworkConfig, TrainConfig  # noqa: E402
 from models.simlpe.network import SiMlpe  # noqa: E402
-from models.simlpe.train import SiMlpeLearner, load_simlpe, mean_error  # noqa: E402
+from models.simlpe.train import SiMlpeLearner, load_simlpe  # noqa: E402
+from models.training.errors import position_error  # noqa: E402
 from models.training.fit import fit  # noqa: E402
 from models.training.run import Run  # noqa: E402
+from models.training.source import ClipSource, Windows  # noqa: E402
 
 SMALL = NetworkConfig(seen=20, step=5, future=12, coordinates=9, blocks=2)
 CONFIG = TrainConfig(network=SMALL, steps=4, batch=8, validate_every=2, ema=0.9)
@@ -26,6 +29,13 @@ def swinging(count: int = 4) -> Clips:
         for _ in range(count)
     ]
     return cut_clips(recordings, 32)
+
+
+def source() -> ClipSource:
+    clips = swinging()
+    motion = clips.all()
+    held = {"swinging": Windows(motion[:, :20], motion[:, 20:])}
+    return ClipSource(clips, 20, held, Layout("core9", (0, 1, 2), (0, 1, 2), ((0, 1),)), vary=False)
 
 
 def test_the_published_network_has_the_published_size() -> None:
@@ -69,16 +79,16 @@ def test_half_precision_is_for_training_and_near_the_whole_one() -> None:
 
 def test_swings_are_learnt_better_than_standing_still(tmp_path: Path) -> None:
     torch.manual_seed(0)
-    clips = swinging()
     config = replace(CONFIG, steps=150, learning_rate=3e-3, drop_at=None)
-    learner = SiMlpeLearner(config, clips, clips.all())
-    still = mean_error(SiMlpe(SMALL), clips.all(), 20)
+    learner = SiMlpeLearner(config, source())
+    cpu, held = torch.device("cpu"), source().validation["swinging"]
+    still = position_error(SiMlpe(SMALL), held, cpu)
     fit("simlpe", learner, Run(tmp_path / "run", config, 0, "train", resume=False), 150, 50)
-    assert mean_error(load_simlpe(tmp_path / "run"), clips.all(), 20) < 0.5 * still
+    assert position_error(load_simlpe(tmp_path / "run"), held, cpu) < 0.5 * still
 
 
 def test_the_rate_drops_where_the_recipe_says() -> None:
-    learner = SiMlpeLearner(replace(CONFIG, drop_at=2), swinging(), swinging().all())
+    learner = SiMlpeLearner(replace(CONFIG, drop_at=2), source())
     generator = torch.Generator().manual_seed(0)
     rates = []
     for _ in range(4):
@@ -90,7 +100,7 @@ def test_the_rate_drops_where_the_recipe_says() -> None:
 def test_a_resumed_run_ends_where_an_unbroken_one_does(tmp_path: Path) -> None:
     def go(folder: Path, stop: int, *, resume: bool = False) -> torch.Tensor:
         torch.manual_seed(0)
-        learner = SiMlpeLearner(CONFIG, swinging(), swinging().all())
+        learner = SiMlpeLearner(CONFIG, source())
         fit("simlpe", learner, Run(folder, CONFIG, 0, "train", resume), stop, 2)
         return torch.cat([p.flatten() for p in learner.network.parameters()]).detach()
 

@@ -1,4 +1,4 @@
-"""Where the predictor's batches come from."""
+"""Where the batches of predictors come from."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +12,6 @@ from models.data.layouts import CORE, Layout
 from models.data.sets import motion_set
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import HALF_QUARTER_TURN, Augmentation, WindowSet, augment, cut
-from models.ma_wgan.config import TrainConfig
 
 AUGMENTATION = Augmentation(yaw=HALF_QUARTER_TURN, scale=0.1, noise_m=0.005, drop=0.05)
 SYNTHETIC_SHARE = 0.6
@@ -77,26 +76,29 @@ class SensorSource:
 
 @dataclass(frozen=True, slots=True)
 class ClipSource:
-    """Windows of plain motion; half run backwards, half are mirrored.
+    """Windows of plain motion; half run backwards, and half are mirrored if bodies are varied.
 
     Attributes:
         clips: Training windows.
         seen: Frames of them that are seen.
         validation: Windows by name.
         layout: The joints.
+        vary: Mirror bodies and change their size too.
     """
 
     clips: Clips
     seen: int
     validation: dict[str, Windows]
     layout: Layout
+    vary: bool
 
     def draw(self, count: int, generator: torch.Generator) -> Windows:
         """An augmented batch."""
         motion = reverse_some(self.clips.draw(count, generator), generator)
-        motion = mirror_some(motion, self.layout.mirror, generator)
-        scale = 1 + SCALE * (2 * torch.rand(count, 1, 1, 1, generator=generator) - 1)
-        motion = motion * scale
+        if self.vary:
+            motion = mirror_some(motion, self.layout.mirror, generator)
+            scale = 1 + SCALE * (2 * torch.rand(count, 1, 1, 1, generator=generator) - 1)
+            motion = motion * scale
         return Windows(motion[:, : self.seen], motion[:, self.seen :])
 
 
@@ -116,29 +118,34 @@ def whole(windows: WindowSet) -> Windows:
     return split(*windows.frames(torch.arange(len(windows))))
 
 
-def make_source(config: TrainConfig, data: Path, cache: Path) -> Source:
-    """The source that a configuration asks for.
+def make_source(
+    name: str, seen: int, data: Path, cache: Path, *, sequences: int, vary: bool = True
+) -> Source:
+    """The source of a configuration.
 
     Args:
-        config: Which data, and how many frames are seen.
+        name: ``server`` (synthetic people and CMU, nine joints) or a set of plain motion.
+        seen: Frames that the model sees.
         data: Folder that holds the set folders.
         cache: Folder of generated recordings.
+        sequences: Takes of virtual people to train on.
+        vary: Mirror the bodies of plain motion and change their size.
     """
-    network = config.network
-    if config.data != "server":
-        motions = motion_set(config.data)
-        held = motions.clips(data, "validation", network.seen, VALIDATION_STRIDE).all()
-        return ClipSource(
-            motions.clips(data, "train", network.seen),
-            network.seen,
-            {config.data: Windows(held[:, : network.seen], held[:, network.seen :])},
-            motions.layout,
+    if name == "server":
+        return SensorSource(
+            cut(synthetic_split(cache, "train", sequences)),
+            cut(cmu_split(data, "train")),
+            {
+                "synthetic": whole(cut(synthetic_split(cache, "validation"), stride=25)),
+                "cmu": whole(cut(cmu_split(data, "validation"), stride=5)),
+            },
         )
-    return SensorSource(
-        cut(synthetic_split(cache, "train", config.synthetic_sequences)),
-        cut(cmu_split(data, "train")),
-        {
-            "synthetic": whole(cut(synthetic_split(cache, "validation"), stride=25)),
-            "cmu": whole(cut(cmu_split(data, "validation"), stride=5)),
-        },
+    motions = motion_set(name)
+    held = motions.clips(data, "validation", seen, VALIDATION_STRIDE).all()
+    return ClipSource(
+        motions.clips(data, "train", seen),
+        seen,
+        {name: Windows(held[:, :seen], held[:, seen:])},
+        motions.layout,
+        vary,
     )
