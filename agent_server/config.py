@@ -125,7 +125,7 @@ class DecideSettings(_Section, frozen=True):
     """
 
     enter: float = 0.65
-    enter_ungated: float = 0.85
+    enter_ungated: float = 0.69
     leave: float = 0.4
     enter_windows: int = 3
     leave_windows: int = 2
