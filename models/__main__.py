@@ -129,6 +129,7 @@ app.add_typer(export_app, name="export")
 app.add_typer(evaluate_app, name="evaluate")
 
 RunOption = Annotated[Path, typer.Option("--run", help="Run to export.")]
+RunsOption = Annotated[list[Path], typer.Option("--run", help="Run to export; may be repeated.")]
 VersionOption = Annotated[str, typer.Option("--version", help="Version of the model.")]
 BundleOption = Annotated[Path, typer.Option("--bundle", help="Folder of a bundle.")]
 PredictorBundleOption = Annotated[
@@ -141,19 +142,19 @@ CLASSIFIER = Path("models/artifacts/interformer_server")
 @export_app.command("ma_wgan")
 def export_ma_wgan(
     data: DataOption,
-    run: RunOption,
+    run: RunsOption,
     out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = SERVER_BUNDLE,
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
 ) -> None:
-    """Export, check and measure a manifold-aware GAN."""
+    """Export, check and measure a manifold-aware GAN, or the average of several."""
     _export("ma_wgan", run, out, version, data, cache)
 
 
 @export_app.command("simlpe")
 def export_simlpe(
     data: DataOption,
-    run: RunOption,
+    run: RunsOption,
     out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
@@ -162,9 +163,11 @@ def export_simlpe(
     _export("simlpe", run, out, version, data, cache)
 
 
-def _export(family: str, run: Path, out: Path, version: str, data: Path, cache: Path) -> None:
+def _export(
+    family: str, runs: list[Path], out: Path, version: str, data: Path, cache: Path
+) -> None:
     torch.set_num_threads(1)
-    _show(export_predictor(family, run, out, version, data, cache).results, as_json=False)
+    _show(export_predictor(family, runs, out, version, data, cache).results, as_json=False)
 
 
 @export_app.command("interformer")

@@ -1,5 +1,6 @@
 """From a training run to the bundle of a predictor."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from models.evaluation.report import benchmark_report, server_report
 from models.export.bundle import SOURCES, Export, write_bundle
 from models.export.card import predictor_card
 from models.export.session import OnnxModel
+from models.ma_wgan.network import Averaged
 from models.ma_wgan.train import load_trained
 from models.simlpe.train import load_simlpe
 from models.training.run import read_info
@@ -32,23 +34,24 @@ PROTOCOLS = {
 
 
 def export_predictor(
-    family: str, run: Path, folder: Path, version: str, data: Path, cache: Path
+    family: str, runs: Sequence[Path], folder: Path, version: str, data: Path, cache: Path
 ) -> Manifest:
-    """Write the bundle of the run's best network, measured on held-out people and recordings.
+    """Write the bundle of the runs' best networks, measured on held-out people and recordings.
 
     Args:
         family: ``ma_wgan`` or ``simlpe``.
-        run: Folder of the training run.
+        runs: Folders of training runs on the same data; their futures are averaged.
         folder: Folder of the bundle.
         version: Version of the model.
         data: Folder that holds the set folders.
         cache: Folder of generated recordings.
     """
-    info = read_info(run)
+    info = _joined([read_info(run) for run in runs])
     trained_on: str = info["config"]["data"]
     protocols = [protocol_named(name) for name in PROTOCOLS[trained_on]]
     first = protocols[0]
-    network = _load(family, run, first)
+    networks = [_load(family, run, first) for run in runs]
+    network = networks[0] if len(networks) == 1 else Averaged(networks).eval()
     windows = {protocol.name: protocol.windows(data, cache) for protocol in protocols}
     seen: int = info["config"]["network"]["seen"]
 
@@ -78,6 +81,29 @@ def export_predictor(
         skeleton=first.layout.name,
     )
     return write_bundle(export, folder, measure, predictor_card)
+
+
+def _joined(infos: list[dict[str, Any]]) -> dict[str, Any]:
+    """What several runs say about themselves, as one.
+
+    Raises:
+        ConfigError: If they were trained on different data or see different frames.
+    """
+    first = infos[0]
+    for info in infos[1:]:
+        one, other = (
+            (each["config"]["data"], each["config"]["network"]["seen"]) for each in (first, info)
+        )
+        if one != other:
+            raise ConfigError(
+                f"--run: one run was trained on {one[0]} with {one[1]} frames seen, another on "
+                f"{other[0]} with {other[1]}: average runs of one kind"
+            )
+    return {
+        **first,
+        "command": "`, averaged with `".join(info["command"] for info in infos),
+        "wall_s": sum(info["wall_s"] for info in infos),
+    }
 
 
 def _load(family: str, run: Path, protocol: Protocol) -> nn.Module:

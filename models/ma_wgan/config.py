@@ -192,6 +192,13 @@ PAPER = TrainConfig(
 CONFIGS: dict[str, TrainConfig] = {
     "server": SERVER,
     "best": BEST,
+    "best_plain": replace(
+        BEST,
+        network=replace(BEST.network, dropout=0.0),
+        steps=15_000,
+        weight_decay=1e-4,
+    ),
+    "best_near": replace(BEST, network=replace(BEST.network, dropout=0.0), steps=4_500, near=1.0),
     "best_cmu": replace(BEST, network=replace(BEST.network, joints=25), data="cmu"),
     "paper": PAPER,
     "paper_quarter": replace(

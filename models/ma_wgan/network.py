@@ -7,6 +7,8 @@ beside its direction, and the body turned to the front inside the network. The p
 are in ``models.ma_wgan.paper``.
 """
 
+from collections.abc import Sequence
+
 import torch
 from torch import nn
 
@@ -112,6 +114,26 @@ class Flipped(nn.Module):
 
     def _mirrored(self, motion: torch.Tensor) -> torch.Tensor:
         return motion.index_select(2, self.mirror) * self.sign
+
+
+class Averaged(nn.Module):
+    """The average future of several trained networks.
+
+    Args:
+        networks: Each (B, seen, J, 3) -> (B, future, J, 3), for the same frames and joints.
+    """
+
+    def __init__(self, networks: Sequence[nn.Module]) -> None:
+        super().__init__()
+        self.networks = nn.ModuleList(networks)
+
+    def forward(self, seen: torch.Tensor) -> torch.Tensor:
+        """(B, seen, J, 3) -> (B, future, J, 3), metres."""
+        total = self.networks[0](seen)
+        for network in self.networks[1:]:
+            total = total + network(seen)
+        mean: torch.Tensor = total / len(self.networks)
+        return mean
 
 
 def carry_on(network: nn.Module, seen: torch.Tensor, frames: int) -> torch.Tensor:
