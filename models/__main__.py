@@ -20,10 +20,10 @@ from models.evaluation.prediction import evaluate
 from models.evaluation.protocols import SERVER_PROTOCOLS, protocol_named
 from models.evaluation.real_streams import msrc12_stream_report
 from models.evaluation.report import classifier_report, compare, server_report
+from models.evaluation.session import OnnxModel
 from models.evaluation.sim2real import sim2real_report
 from models.export.classifier import export_classifier
 from models.export.predictor import export_predictor
-from models.export.session import OnnxModel
 from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
 from models.interformer.config import TrainConfig as InterformerConfig
 from models.interformer.train import train as train_classifier

@@ -12,7 +12,7 @@ from agent_server.errors import ConfigError
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.data.sets import motion_set
 from models.evaluation.protocols import Protocol
-from models.export.session import OnnxModel
+from models.evaluation.session import OnnxModel
 
 SERVER_BUNDLE = Path("models/artifacts/ma_wgan_server")
 BENCHMARKS = Path("models/benchmarks")

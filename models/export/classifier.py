@@ -13,10 +13,10 @@ from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import AMBIGUOUS, cut, join
 from models.evaluation.gestures import as_torch, hold_last, labelled_windows, scores
 from models.evaluation.report import STRIDE, classifier_report
+from models.evaluation.session import OnnxModel
 from models.export.bundle import Export, write_bundle
 from models.export.calibration import fit_temperature
 from models.export.card import classifier_card
-from models.export.session import OnnxModel
 from models.interformer.network import Calibrated, Classifier
 from models.interformer.train import load_classifier
 from models.training.run import read_info

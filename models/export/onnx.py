@@ -9,7 +9,7 @@ from torch import nn
 
 from agent_server.domain.arrays import Float32
 from agent_server.errors import BundleError
-from models.export.session import OnnxModel
+from models.evaluation.session import OnnxModel
 
 OPSET = 18
 TOLERANCE = 1e-4

@@ -8,7 +8,7 @@ import torch.nn.functional as F
 
 TINY = 1e-12
 FLAT = 1e-5
-"""Added to a sine at right angles. Much less than this is zero to the exporter."""
+"""Added to a sine at right angles, so that a point at the base has a direction."""
 NEAR = 1e-4
 """Below this angle in radians the series replace the quotients, which lose all digits."""
 LANES = 16
@@ -62,7 +62,9 @@ def log(point: torch.Tensor, base: torch.Tensor, clip: float | None = None) -> t
     if clip is not None:
         angle = torch.acos(cosine.clamp(-clip, clip))
         return angle / torch.sin(angle) * across
-    sine = torch.sqrt(_dot(across, across) + FLAT**2)
+    # In units of FLAT, because the exporter takes the square of a tiny constant for zero.
+    scaled = across / FLAT
+    sine = FLAT * torch.sqrt(_dot(scaled, scaled) + 1.0)
     return torch.atan2(sine, cosine) / sine * across
 
 

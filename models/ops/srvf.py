@@ -7,7 +7,7 @@ d_t = L q_t |q_t|. The sphere forgets L and the starting point; both are kept be
 
 import torch
 
-TINY = 1e-12
+TINY = 1e-9
 
 
 def _norm(vectors: torch.Tensor, floor: float = TINY) -> torch.Tensor:
@@ -16,7 +16,9 @@ def _norm(vectors: torch.Tensor, floor: float = TINY) -> torch.Tensor:
     The sum is a product of matrices, see models.ops.sphere about equal bits.
     """
     ones = torch.ones(vectors.shape[-1], 1, dtype=vectors.dtype, device=vectors.device)
-    return torch.sqrt((vectors * vectors) @ ones + floor**2)
+    # In units of the floor, because the exporter takes the square of a tiny constant for zero.
+    scaled = vectors / floor
+    return floor * torch.sqrt((scaled * scaled) @ ones + 1.0)
 
 
 def to_sphere(curve: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:

@@ -14,10 +14,10 @@ from agent_server.inference.manifest import (  # noqa: E402
     Manifest,
     read_manifest,
 )
+from models.evaluation.session import OnnxModel  # noqa: E402
 from models.export.bundle import Export, write_bundle  # noqa: E402
 from models.export.calibration import fit_temperature  # noqa: E402
 from models.export.onnx import check_parity, is_batch_exact, write_onnx  # noqa: E402
-from models.export.session import OnnxModel  # noqa: E402
 from models.interformer.config import NetworkConfig as ClassifierConfig  # noqa: E402
 from models.interformer.network import Calibrated, Classifier  # noqa: E402
 from models.ma_wgan.config import NetworkConfig  # noqa: E402

@@ -48,8 +48,8 @@ def test_what_is_not_probable_enough_never_starts():
 
 
 def test_what_no_face_confirms_must_be_surer():
-    assert Stream().push("hello", level=0.8, count=10).phase is Phase.UNSURE
-    assert Stream().push("loud", level=0.8, count=10).phase is Phase.ACTIVE
+    assert Stream().push("hello", level=0.67, count=10).phase is Phase.UNSURE
+    assert Stream().push("loud", level=0.67, count=10).phase is Phase.ACTIVE
     assert Stream().push("hello", level=0.9, count=10).phase is Phase.ACTIVE
 
 
