@@ -199,6 +199,7 @@ CONFIGS: dict[str, TrainConfig] = {
         weight_decay=1e-4,
     ),
     "best_near": replace(BEST, network=replace(BEST.network, dropout=0.0), steps=4_500, near=1.0),
+    "best_nearer": replace(BEST, network=replace(BEST.network, dropout=0.0), steps=3_000, near=1.5),
     "best_cmu": replace(BEST, network=replace(BEST.network, joints=25), data="cmu"),
     "paper": PAPER,
     "paper_quarter": replace(
