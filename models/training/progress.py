@@ -10,7 +10,7 @@ class TrainingProgress:
     """A bar with the loss terms and the time left; plain lines where there is no terminal."""
 
     def __init__(self, title: str, steps: int, done: int) -> None:
-        self._console = Console()
+        self._console = Console(stderr=True)  # stdout is for results
         self._bar = Progress(
             TextColumn("{task.description}"),
             BarColumn(),
