@@ -12,6 +12,7 @@ from agent_server.domain.gesture import GESTURES, IDLE
 from agent_server.domain.motion import CLASSIFIED_FRAMES, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.errors import InvalidInput
+from models.data.layouts import CORE
 
 AMBIGUOUS = -1
 """Label of a window that is left out of training and of accuracies."""
@@ -19,17 +20,7 @@ STARTED_FRAMES = 8
 """A gesture counts from this many frames (0.32 s) after its onset; before, it is ambiguous."""
 LEAVING_FRAMES = 10
 """It stops counting this many frames (0.4 s) before its offset: the hands are mostly back."""
-MIRROR = [
-    CoreJoint.HEAD,
-    CoreJoint.NECK,
-    CoreJoint.NAVEL,
-    CoreJoint.RIGHT_SHOULDER,
-    CoreJoint.RIGHT_ELBOW,
-    CoreJoint.RIGHT_WRIST,
-    CoreJoint.LEFT_SHOULDER,
-    CoreJoint.LEFT_ELBOW,
-    CoreJoint.LEFT_WRIST,
-]
+MIRROR = list(CORE.mirror)
 
 
 @dataclass(frozen=True, slots=True)

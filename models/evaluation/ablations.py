@@ -10,7 +10,7 @@ from torch import nn
 from agent_server.domain.arrays import Float32
 from models.evaluation.forecasters import Forecaster, Predict
 from models.evaluation.futures import futures_figures
-from models.evaluation.prediction import figures, outcomes
+from models.evaluation.prediction import action_figures, average, outcomes
 from models.evaluation.protocols import protocol_named
 from models.evaluation.recursion import recursion_errors
 from models.ma_wgan.ablations import ROWS
@@ -19,6 +19,7 @@ from models.training.run import INFO, Run
 
 PROTOCOL = "h36m-256"
 CHUNK = 512
+KEYS = ("mpjpe", "mpjs_error", "jump_mm", "bone_error_mm")
 
 
 def ablation_report(folder: Path, seed: int, data: Path, cache: Path) -> dict[str, Any]:
@@ -44,18 +45,8 @@ def ablation_report(folder: Path, seed: int, data: Path, cache: Path) -> dict[st
             )
         network = load_predictor(place)
         model = Forecaster(name, in_numpy(network), config.network.seen, config.network.joints, 0)
-        results = outcomes(model, protocol, windows)
-        actions = [figures(outcome, protocol) for outcome in results.values()]
-        rows[name] = {
-            "mpjpe": {
-                ms: round(float(np.mean([row["mpjpe"][ms] for row in actions])), 2)
-                for ms in actions[0]["mpjpe"]
-            },
-            **{
-                key: round(float(np.mean([row[key] for row in actions])), 2)
-                for key in ("mpjs_error", "jump_mm", "bone_error_mm")
-            },
-        }
+        found = average(action_figures(protocol, outcomes(model, protocol, windows)))
+        rows[name] = {key: found[key] for key in KEYS}
         if name == "all":
             rows[name]["recursion"] = recursion_errors(network, config.network.seen, data)
         if config.network.noise:

@@ -97,17 +97,27 @@ def evaluate(
 
 def summary(model: Forecaster, protocol: Protocol, results: dict[str, Outcome]) -> dict[str, Any]:
     """``average`` over the actions, ``actions`` by name, ``parameters``, ``ms_per_window``."""
-    actions = {action: figures(outcome, protocol) for action, outcome in results.items()}
+    actions = action_figures(protocol, results)
     return {
         "model": model.name,
         "protocol": protocol.name,
         "metric": protocol.metric,
         "windows": sum(len(outcome.seen) for outcome in results.values()),
-        "average": _rounded(_mean(list(actions.values()))),
+        "average": average(actions),
         "actions": {action: _rounded(row) for action, row in actions.items()},
         "parameters": model.parameters,
         "ms_per_window": model.window_ms(),
     }
+
+
+def action_figures(protocol: Protocol, results: dict[str, Outcome]) -> dict[str, dict[str, Any]]:
+    """The figures of each action, unrounded."""
+    return {action: figures(outcome, protocol) for action, outcome in results.items()}
+
+
+def average(actions: dict[str, dict[str, Any]]) -> dict[str, Any]:
+    """The mean of all actions' figures, which count alike, rounded."""
+    return _rounded(_mean(list(actions.values())))
 
 
 def gain_percent(errors: dict[str, float], baseline: dict[str, float]) -> dict[str, float]:

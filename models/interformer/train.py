@@ -1,6 +1,5 @@
 """Training of the classifier on what was seen and what a frozen predictor expects."""
 
-import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,13 +15,14 @@ from agent_server.errors import InvalidInput
 from models.data.windows import AMBIGUOUS, Augmentation, WindowSet, augment
 from models.interformer.config import NetworkConfig, TrainConfig
 from models.interformer.network import Classifier
-from models.training.ema import Ema
-from models.training.progress import TrainingProgress
+from models.training.fit import fit, training_device
 from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
+from models.training.updater import Updater
 
 AUGMENTATION = Augmentation(yaw=0.35, scale=0.1, noise_m=0.02, drop=0.08)
 IDLE_INDEX = GESTURES.index(IDLE)
+LARGEST_GRADIENT = 1.0
 
 
 def hold_last(seen: torch.Tensor) -> torch.Tensor:
@@ -123,17 +123,20 @@ def balanced_accuracy(logits: torch.Tensor, labels: torch.Tensor) -> float:
 
 
 class Trainer:
-    """One network and what updates it; its state can be saved and restored."""
+    """One network and what updates it."""
 
     def __init__(self, config: TrainConfig, device: torch.device) -> None:
         self.config = config
         self.network = Classifier(config.network).to(device)
-        self.ema = Ema(self.network, config.ema)
-        self.optimizer = torch.optim.AdamW(
+        optimizer = torch.optim.AdamW(
             self.network.parameters(), config.learning_rate, weight_decay=config.weight_decay
         )
-        self.schedule = torch.optim.lr_scheduler.LambdaLR(
-            self.optimizer, lambda step: warm_cosine(step, config.steps)
+        self.updater = Updater(
+            self.network,
+            optimizer,
+            lambda step: warm_cosine(step, config.steps),
+            ema=config.ema,
+            clip=LARGEST_GRADIENT,
         )
 
     def step(self, motion: torch.Tensor, labels: torch.Tensor) -> dict[str, float]:
@@ -141,32 +144,59 @@ class Trainer:
         self.network.train()
         logits = self.network(motion)
         loss = F.cross_entropy(logits, labels, label_smoothing=self.config.smoothing)
-        self.optimizer.zero_grad(set_to_none=True)
-        torch.autograd.backward(loss)
-        nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
-        self.optimizer.step()
-        self.schedule.step()
-        self.ema.update(self.network)
+        self.updater.apply(loss)
         accuracy = (logits.argmax(-1) == labels).float().mean()
         return {"loss": float(loss.detach()), "accuracy": float(accuracy)}
 
+
+class ClassifierLearner:
+    """Draws batches of completed windows, and judges by the balanced validation loss."""
+
+    def __init__(
+        self,
+        config: TrainConfig,
+        training: WindowSet,
+        validation: WindowSet,
+        predictor: nn.Module,
+    ) -> None:
+        self.config, self.training = config, training
+        self.device = training_device()
+        self.predictor = predictor.to(self.device).eval().requires_grad_(False)
+        self.pools = Pools.of(training)
+        self.validation = validation.take((validation.labels != AMBIGUOUS).nonzero()[:, 0])
+        self.trainer = Trainer(config, self.device)
+
+    def step(self, generator: torch.Generator) -> dict[str, float]:
+        """One update on windows of which some are undecided."""
+        config, training = self.config, self.training
+        index = self.pools.draw(config.batch, config.idle, generator)
+        observed, _ = augment(*training.frames(index), AUGMENTATION, generator)
+        since = training.since_onset[index]
+        undecided = ((since < 0) & (since > -PREDICTED_FRAMES)).to(self.device)
+        observed = observed.to(self.device)
+        motion = complete(self.predictor, observed, config, undecided, generator)
+        return self.trainer.step(motion, training.labels[index].to(self.device))
+
+    def validate(self) -> dict[str, float]:
+        """Balanced loss, which is the score, and balanced accuracy."""
+        futures = hold_last if self.config.seen_only else self.predictor
+        network = self.trainer.updater.ema.network
+        logits = window_logits(network, futures, self.validation, self.device)
+        loss = balanced_loss(logits, self.validation.labels)
+        accuracy = balanced_accuracy(logits, self.validation.labels)
+        return {"score": loss, "validation_loss": loss, "validation_accuracy": accuracy}
+
+    def best(self) -> dict[str, Any]:
+        """The averaged weights."""
+        return self.trainer.updater.best()
+
     def state(self) -> dict[str, Any]:
-        """Everything that a resumed run needs, in plain tensors and numbers."""
-        return {
-            "network": self.network.state_dict(),
-            "ema": self.ema.network.state_dict(),
-            "ema_updates": self.ema.updates,
-            "optimizer": self.optimizer.state_dict(),
-            "schedule": self.schedule.state_dict(),
-        }
+        """Everything that a resumed run needs."""
+        return self.trainer.updater.state()
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Go on from :meth:`state`."""
-        self.network.load_state_dict(state["network"])
-        self.ema.network.load_state_dict(state["ema"])
-        self.ema.updates = state["ema_updates"]
-        self.optimizer.load_state_dict(state["optimizer"])
-        self.schedule.load_state_dict(state["schedule"])
+        self.trainer.updater.load(state)
 
 
 def train(
@@ -185,60 +215,9 @@ def train(
         validation: Windows of other people.
         predictor: Frozen.
     """
-    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
-    generator = torch.Generator().manual_seed(run.info["seed"])
     torch.manual_seed(run.info["seed"])
-    predictor = predictor.to(device).eval().requires_grad_(False)
-    pools = Pools.of(training)
-    validation = validation.take((validation.labels != AMBIGUOUS).nonzero()[:, 0])
-    trainer = Trainer(config, device)
-    first, best, spent = 0, float("inf"), 0.0
-    state = run.resume()
-    if state is not None:
-        trainer.load(state["trainer"])
-        generator.set_state(state["generator"])
-        first, best, spent = state["step"], state["best"], run.info["wall_s"]
-    began = time.monotonic() - spent
-    with TrainingProgress("interformer", config.steps, first) as progress:
-        for step in range(first, config.steps):
-            index = pools.draw(config.batch, config.idle, generator)
-            observed, _ = augment(*training.frames(index), AUGMENTATION, generator)
-            labels = training.labels[index].to(device)
-            since = training.since_onset[index]
-            undecided = ((since < 0) & (since > -PREDICTED_FRAMES)).to(device)
-            motion = complete(predictor, observed.to(device), config, undecided, generator)
-            terms = trainer.step(motion, labels)
-            progress.advance(terms)
-            done = step + 1
-            if done % config.validate_every and done != config.steps:
-                continue
-            network = trainer.ema.network
-            futures = hold_last if config.seen_only else predictor
-            logits = window_logits(network, futures, validation, device)
-            loss = balanced_loss(logits, validation.labels)
-            if loss < best:
-                best = loss
-                run.save_best({"network": network.state_dict(), "step": done})
-            wall = time.monotonic() - began
-            accuracy = balanced_accuracy(logits, validation.labels)
-            row = {
-                "step": done,
-                "wall_s": wall,
-                "validation_loss": loss,
-                "validation_accuracy": accuracy,
-                **terms,
-            }
-            run.log(row)
-            progress.report(done, row)
-            run.save(
-                {
-                    "trainer": trainer.state(),
-                    "generator": generator.get_state(),
-                    "step": done,
-                    "best": best,
-                },
-                wall,
-            )
+    learner = ClassifierLearner(config, training, validation, predictor)
+    fit("interformer", learner, run, config.steps, config.validate_every)
 
 
 def load_classifier(folder: Path) -> Classifier:

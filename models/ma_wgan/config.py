@@ -134,7 +134,8 @@ SERVER = TrainConfig(
     ema=0.999,
 )
 
-BEST = TrainConfig(
+BEST = replace(
+    SERVER,
     network=NetworkConfig(
         seen=50,
         future=25,
@@ -147,17 +148,7 @@ BEST = TrainConfig(
     ),
     data="h36m",
     steps=9_000,
-    batch=128,
-    learning_rate=2.5e-3,
     weight_decay=0.05,
-    adversarial=0.01,
-    reconstruction=0.05,
-    skeleton=1.0,
-    bones=1.0,
-    length=0.01,
-    velocity=20.0,
-    near=0.5,
-    ema=0.999,
 )
 
 PAPER = TrainConfig(

@@ -21,14 +21,15 @@ from models.ops.losses import (
     joint_distance,
     near_weights,
 )
-from models.training.ema import Ema
 from models.training.errors import validation_errors
 from models.training.fit import fit, training_device
 from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
 from models.training.source import Source, Windows, make_source
+from models.training.updater import Updater
 
 REFERENCE_WINDOWS = 4_000
+LARGEST_GRADIENT = 1.0
 GRAM_EVERY = 5
 """The Gram matrices of every fifth frame say the same as all of them."""
 
@@ -92,16 +93,19 @@ class PredictorLearner:
         self.device = training_device()
         self.network = Predictor(config.network, reference, config.half).to(self.device)
         self.critic = make_critic(config.network).to(self.device)
-        self.ema = Ema(self.network, config.ema)
         self.weights = near_weights(config.network.future, config.near).to(self.device)
-        self.optimizer = torch.optim.AdamW(
+        optimizer = torch.optim.AdamW(
             self.network.parameters(), config.learning_rate, weight_decay=config.weight_decay
+        )
+        self.updater = Updater(
+            self.network,
+            optimizer,
+            lambda step: warm_cosine(step, config.steps),
+            ema=config.ema,
+            clip=LARGEST_GRADIENT,
         )
         self.critic_optimizer = torch.optim.Adam(
             self.critic.parameters(), config.critic_rate, betas=(0.5, 0.9)
-        )
-        self.schedule = torch.optim.lr_scheduler.LambdaLR(
-            self.optimizer, lambda step: warm_cosine(step, config.steps)
         )
 
     def step(self, generator: torch.Generator) -> dict[str, float]:
@@ -126,13 +130,8 @@ class PredictorLearner:
             real = tuple(torch.cat([part, part[: len(drawn.poses)]]) for part in real)
         if config.adversarial:
             terms["adversarial"] = -self.critic(*fake).mean()
-        loss = torch.stack([getattr(config, name) * term for name, term in terms.items()]).sum()
-        self.optimizer.zero_grad(set_to_none=True)
-        torch.autograd.backward(loss)
-        nn.utils.clip_grad_norm_(self.network.parameters(), 1.0)
-        self.optimizer.step()
-        self.schedule.step()
-        self.ema.update(self.network)
+        weighted = [getattr(config, name) * term for name, term in terms.items()]
+        self.updater.apply(torch.stack(weighted).sum())
         if config.adversarial:
             self._teach_critic(real, tuple(part.detach() for part in fake), generator)
         return {name: float(term.detach()) for name, term in terms.items()}
@@ -152,33 +151,25 @@ class PredictorLearner:
 
     def validate(self) -> dict[str, float]:
         """Errors in mm by name, and the score."""
-        return validation_errors(self.ema.network, self.source.validation, self.device)
+        return validation_errors(self.updater.ema.network, self.source.validation, self.device)
 
     def best(self) -> dict[str, Any]:
         """The averaged weights."""
-        return {"network": self.ema.network.state_dict()}
+        return self.updater.best()
 
     def state(self) -> dict[str, Any]:
-        """Everything that a resumed run needs, in plain tensors and numbers."""
+        """Everything that a resumed run needs."""
         return {
-            "network": self.network.state_dict(),
+            **self.updater.state(),
             "critic": self.critic.state_dict(),
-            "ema": self.ema.network.state_dict(),
-            "ema_updates": self.ema.updates,
-            "optimizer": self.optimizer.state_dict(),
             "critic_optimizer": self.critic_optimizer.state_dict(),
-            "schedule": self.schedule.state_dict(),
         }
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Go on from :meth:`state`."""
-        self.network.load_state_dict(state["network"])
+        self.updater.load(state)
         self.critic.load_state_dict(state["critic"])
-        self.ema.network.load_state_dict(state["ema"])
-        self.ema.updates = state["ema_updates"]
-        self.optimizer.load_state_dict(state["optimizer"])
         self.critic_optimizer.load_state_dict(state["critic_optimizer"])
-        self.schedule.load_state_dict(state["schedule"])
 
 
 def train(config: TrainConfig, run: Run, data: Path, cache: Path) -> None:

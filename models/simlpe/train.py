@@ -5,17 +5,16 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from torch import nn
 
 from models.ops.losses import joint_distance
 from models.simlpe.config import NetworkConfig, TrainConfig
 from models.simlpe.network import SiMlpe
-from models.training.ema import Ema
 from models.training.errors import validation_errors
 from models.training.fit import fit, training_device
 from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
 from models.training.source import Source, make_source
+from models.training.updater import Updater
 
 
 class SiMlpeLearner:
@@ -25,12 +24,13 @@ class SiMlpeLearner:
         self.config, self.source = config, source
         self.device = training_device()
         self.network = SiMlpe(config.network, config.half).to(self.device)
-        self.ema = Ema(self.network, config.ema)
         family = torch.optim.AdamW if config.drop_at is None else torch.optim.Adam
         self.optimizer = family(
             self.network.parameters(), config.learning_rate, weight_decay=config.weight_decay
         )
-        self.schedule = torch.optim.lr_scheduler.LambdaLR(self.optimizer, self._rate)
+        self.updater = Updater(
+            self.network, self.optimizer, self._rate, ema=config.ema, clip=config.clip
+        )
 
     def _rate(self, step: int) -> float:
         config = self.config
@@ -47,39 +47,24 @@ class SiMlpeLearner:
         predicted = predicted.unflatten(2, true.shape[2:])
         position = joint_distance(predicted, true)
         velocity = joint_distance(predicted.diff(dim=1), true.diff(dim=1))
-        self.optimizer.zero_grad(set_to_none=True)
-        torch.autograd.backward(position + velocity)
-        nn.utils.clip_grad_norm_(self.network.parameters(), self.config.clip)
-        self.optimizer.step()
-        self.schedule.step()
-        self.ema.update(self.network)
+        self.updater.apply(position + velocity)
         return {"position": float(position.detach()), "velocity": float(velocity.detach())}
 
     def validate(self) -> dict[str, float]:
         """Errors in mm by name, and the score."""
-        return validation_errors(self.ema.network, self.source.validation, self.device)
+        return validation_errors(self.updater.ema.network, self.source.validation, self.device)
 
     def best(self) -> dict[str, Any]:
         """The averaged weights."""
-        return {"network": self.ema.network.state_dict()}
+        return self.updater.best()
 
     def state(self) -> dict[str, Any]:
-        """Everything that a resumed run needs, in plain tensors and numbers."""
-        return {
-            "network": self.network.state_dict(),
-            "ema": self.ema.network.state_dict(),
-            "ema_updates": self.ema.updates,
-            "optimizer": self.optimizer.state_dict(),
-            "schedule": self.schedule.state_dict(),
-        }
+        """Everything that a resumed run needs."""
+        return self.updater.state()
 
     def load(self, state: Mapping[str, Any]) -> None:
         """Go on from :meth:`state`."""
-        self.network.load_state_dict(state["network"])
-        self.ema.network.load_state_dict(state["ema"])
-        self.ema.updates = state["ema_updates"]
-        self.optimizer.load_state_dict(state["optimizer"])
-        self.schedule.load_state_dict(state["schedule"])
+        self.updater.load(state)
 
 
 def train(config: TrainConfig, run: Run, data: Path, cache: Path) -> None:
