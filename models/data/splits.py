@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Literal
 
-from agent_server.domain.gesture import IDLE
 from agent_server.synthetic.corpus import subject_names
 from models.data.cmu import IDLE_ACTIONS, held_out, read_cmu
 from models.data.synthetic import cached_recordings
@@ -31,9 +30,7 @@ def cmu_split(data: Path, split: Split) -> list[Recording]:
         Recording(
             observed=motion.positions,
             clean=motion.positions,
-            gesture=IDLE if motion.label in IDLE_ACTIONS else None,
-            onset=len(motion.positions),
-            offset=len(motion.positions),
+            stretches=() if motion.label in IDLE_ACTIONS else None,
             subject=motion.subject,
         )
         for motion in read_cmu(data, "test" if split == "test" else "train")

@@ -9,7 +9,7 @@ import torch
 from numpy.typing import NDArray
 
 from agent_server.domain.gesture import GESTURES, IDLE
-from agent_server.domain.motion import CLASSIFIED_FRAMES, SEEN_FRAMES
+from agent_server.domain.motion import CLASSIFIED_FRAMES, PREDICTED_FRAMES, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.errors import InvalidInput
 from models.data.layouts import CORE
@@ -24,44 +24,67 @@ MIRROR = list(CORE.mirror)
 
 
 @dataclass(frozen=True, slots=True)
+class Stretch:
+    """A part of a recording in which a gesture is made.
+
+    Attributes:
+        gesture: Its name.
+        onset: Frame in which the movement starts.
+        offset: Frame in which the body is back at rest.
+    """
+
+    gesture: str
+    onset: int
+    offset: int
+
+
+@dataclass(frozen=True, slots=True)
 class Recording:
     """One take, with what happens in it.
 
     Attributes:
         observed: Shape (T, 9, 3), metres: what the sensor gives, at 25 Hz.
         clean: Shape (T, 9, 3), metres: where the joints are; the same array where unknown.
-        gesture: Label of the stretch from ``onset`` to ``offset``; None says that nothing is
+        stretches: Gestures in the order of time, all else is idle; None says that nothing is
             known about gestures here, so that no window gets a label.
-        onset: Frame in which the movement starts.
-        offset: Frame in which the body is back at rest.
         subject: Who moves.
     """
 
     observed: NDArray[np.float32]
     clean: NDArray[np.float32]
-    gesture: str | None
-    onset: int
-    offset: int
+    stretches: tuple[Stretch, ...] | None
     subject: str
 
 
 def window_labels(
-    gesture: str | None, onset: int, offset: int, last_seen: NDArray[np.int64]
+    stretches: Sequence[Stretch] | None, classes: Sequence[str], last_seen: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """Index in GESTURES of the windows whose last seen frame is given, or AMBIGUOUS.
+    """Index in ``classes`` of the windows whose last seen frame is given, or AMBIGUOUS.
 
     A gesture is going on from 8 frames after its onset until 10 frames before its offset.
     Outside onset to offset it is idle; the two margins are ambiguous.
     """
-    if gesture is None:
+    if stretches is None:
         return np.full(len(last_seen), AMBIGUOUS)
-    idle = GESTURES.index(IDLE)
-    if gesture == IDLE:
-        return np.full(len(last_seen), idle)
-    started = last_seen >= onset + STARTED_FRAMES
-    shown = started & (last_seen <= offset - LEAVING_FRAMES)
-    outside = (last_seen < onset) | (last_seen >= offset)
-    return np.select([shown, outside], [GESTURES.index(gesture), idle], AMBIGUOUS)
+    labels = np.full(len(last_seen), classes.index(IDLE))
+    for stretch in stretches:
+        inside = (last_seen >= stretch.onset) & (last_seen < stretch.offset)
+        shown = inside & (last_seen >= stretch.onset + STARTED_FRAMES)
+        shown &= last_seen <= stretch.offset - LEAVING_FRAMES
+        labels[inside] = AMBIGUOUS
+        labels[shown] = classes.index(stretch.gesture)
+    return labels
+
+
+def future_onsets(
+    stretches: Sequence[Stretch] | None, last_seen: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Whether a gesture starts between the last seen frame and the end of the window."""
+    ahead = [
+        (stretch.onset > last_seen) & (stretch.onset < last_seen + PREDICTED_FRAMES)
+        for stretch in stretches or ()
+    ]
+    return np.any(ahead, axis=0) if ahead else np.zeros(len(last_seen), np.bool_)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,18 +95,17 @@ class WindowSet:
         observed: Shape (F, 9, 3), all recordings one after the other.
         clean: Shape (F, 9, 3).
         starts: Shape (N,), first frame of each window.
-        labels: Shape (N,), index in GESTURES or AMBIGUOUS.
-        since_onset: Shape (N,), frames from the gesture's onset to the last seen frame;
-            negative before it.
-        recordings: Shape (N,), index of the recording.
+        labels: Shape (N,), index in ``classes`` or AMBIGUOUS.
+        undecided: Shape (N,), whether the future shows a gesture that the label does not say.
+        classes: Names of the labels.
     """
 
     observed: torch.Tensor
     clean: torch.Tensor
     starts: torch.Tensor
     labels: torch.Tensor
-    since_onset: torch.Tensor
-    recordings: torch.Tensor
+    undecided: torch.Tensor
+    classes: tuple[str, ...]
 
     def __len__(self) -> int:
         return len(self.starts)
@@ -95,8 +117,8 @@ class WindowSet:
             self.clean,
             self.starts[index],
             self.labels[index],
-            self.since_onset[index],
-            self.recordings[index],
+            self.undecided[index],
+            self.classes,
         )
 
     def frames(self, index: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
@@ -107,7 +129,9 @@ class WindowSet:
         return observed - origin, clean - origin
 
 
-def cut(recordings: Iterable[Recording], stride: int = 1) -> WindowSet:
+def cut(
+    recordings: Iterable[Recording], stride: int = 1, classes: tuple[str, ...] = GESTURES
+) -> WindowSet:
     """Every window of 75 frames that fits into a recording, ``stride`` frames apart.
 
     Raises:
@@ -115,44 +139,42 @@ def cut(recordings: Iterable[Recording], stride: int = 1) -> WindowSet:
     """
     observed: list[NDArray[np.float32]] = []
     clean: list[NDArray[np.float32]] = []
-    columns: list[NDArray[np.int64]] = []
+    starts: list[NDArray[np.int64]] = []
+    labels: list[NDArray[np.int64]] = []
+    undecided: list[NDArray[np.bool_]] = []
     base = 0
-    for number, recording in enumerate(recordings):
+    for recording in recordings:
         frames = len(recording.observed)
-        starts = np.arange(0, frames - CLASSIFIED_FRAMES + 1, stride)
-        last = starts + SEEN_FRAMES - 1
-        labels = window_labels(recording.gesture, recording.onset, recording.offset, last)
-        numbers = np.full(len(starts), number)
-        columns.append(np.stack([base + starts, labels, last - recording.onset, numbers]))
+        first = np.arange(0, frames - CLASSIFIED_FRAMES + 1, stride)
+        last = first + SEEN_FRAMES - 1
+        starts.append(base + first)
+        labels.append(window_labels(recording.stretches, classes, last))
+        undecided.append(future_onsets(recording.stretches, last))
         observed.append(recording.observed)
         clean.append(recording.clean)
         base += frames
-    table = np.concatenate(columns, axis=1) if columns else np.empty((4, 0), np.int64)
-    if not table.size:
+    if not any(map(len, starts)):
         raise InvalidInput(f"no recording has {CLASSIFIED_FRAMES} frames: give longer ones")
     return WindowSet(
         torch.from_numpy(np.concatenate(observed)).float(),
         torch.from_numpy(np.concatenate(clean)).float(),
-        *torch.from_numpy(table),
+        torch.from_numpy(np.concatenate(starts)),
+        torch.from_numpy(np.concatenate(labels)),
+        torch.from_numpy(np.concatenate(undecided)),
+        classes,
     )
 
 
 def join(sets: Sequence[WindowSet]) -> WindowSet:
-    """Several sets as one; recordings are numbered on."""
-    starts, numbers = [], []
-    frames = recordings = 0
-    for one in sets:
-        starts.append(one.starts + frames)
-        numbers.append(one.recordings + recordings)
-        frames += len(one.observed)
-        recordings += int(one.recordings.max()) + 1
+    """Several sets of the same classes as one."""
+    bases = np.cumsum([0, *(len(one.observed) for one in sets)]).tolist()
     return WindowSet(
         torch.cat([one.observed for one in sets]),
         torch.cat([one.clean for one in sets]),
-        torch.cat(starts),
+        torch.cat([one.starts + base for one, base in zip(sets, bases, strict=False)]),
         torch.cat([one.labels for one in sets]),
-        torch.cat([one.since_onset for one in sets]),
-        torch.cat(numbers),
+        torch.cat([one.undecided for one in sets]),
+        sets[0].classes,
     )
 
 

@@ -16,8 +16,8 @@ from agent_server.domain.motion import CLASSIFIED_FRAMES, FRAME_NS, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.skeleton.readers.msrc12 import read_msrc12
 from models.data.cmu import read_cmu
+from models.data.real import core_stream, source_files
 from models.data.splits import synthetic_split
-from models.evaluation.sim2real import core_stream, source_files
 
 STRIDE = 25
 MM = np.float32(1000)
@@ -48,9 +48,10 @@ def synthetic_core_windows(data: Path, cache: Path) -> dict[str, Float32]:
     windows: dict[str, list[Float32]] = {}
     for recording in synthetic_split(cache, "test"):
         clean = _windows(recording.clean)
+        gesture = recording.stretches[0].gesture if recording.stretches else IDLE
         for seen, future in zip(_windows(recording.observed), clean, strict=True):
             window = np.concatenate([seen[:SEEN_FRAMES], future[SEEN_FRAMES:]])
-            windows.setdefault(recording.gesture or IDLE, []).append(window)
+            windows.setdefault(gesture, []).append(window)
     return _stacked(windows)
 
 

@@ -8,7 +8,7 @@ import torch
 
 from agent_server.config import DecideSettings, WindowSettings
 from agent_server.domain.arrays import Float32
-from agent_server.domain.gesture import GESTURES, HELLO, IDLE, Classification
+from agent_server.domain.gesture import GESTURES, HELLO, Classification
 from agent_server.domain.motion import FRAME_NS, RATE_HZ, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.stages.decide import GestureTracker, Phase
@@ -38,9 +38,7 @@ def labelled_windows(windows: WindowSet) -> tuple[Float32, Float32, np.ndarray]:
 
     These have a label, and their future shows nothing that the label does not say.
     """
-    since = windows.since_onset
-    hidden = (since < 0) & (since > -50)
-    index = ((windows.labels != AMBIGUOUS) & ~hidden).nonzero()[:, 0]
+    index = ((windows.labels != AMBIGUOUS) & ~windows.undecided).nonzero()[:, 0]
     motion = windows.frames(index)[0].numpy()
     return motion[:, :SEEN_FRAMES], motion, windows.labels[index].numpy()
 
@@ -113,15 +111,16 @@ def evaluate_decisions(
     delays: list[float] = []
     right = wrong = missed = 0
     for take in recordings:
-        if take.gesture in (None, IDLE):
+        if not take.stretches:
             continue
+        asked = take.stretches[0]
         seen, last = sliding_seen(take.observed)
         found = decisions(probabilities_of(classify, predict, seen))
         if not found:
             missed += 1
-        elif found[0][1] == take.gesture:
+        elif found[0][1] == asked.gesture:
             right += 1
-            delays.append((int(last[found[0][0]]) - take.onset) / RATE_HZ)
+            delays.append((int(last[found[0][0]]) - asked.onset) / RATE_HZ)
         else:
             wrong += 1
     total = right + wrong + missed

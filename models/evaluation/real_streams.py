@@ -22,8 +22,9 @@ from agent_server.skeleton.normalise import normalise
 from agent_server.skeleton.readers.msrc12 import read_msrc12
 from agent_server.skeleton.readers.source import SourceRecording
 from agent_server.stages.perceive import Perception
+from models.data.real import source_files
 from models.evaluation.gestures import Classify, Predict, decisions, probabilities_of
-from models.evaluation.sim2real import MSRC12, source_files
+from models.evaluation.sim2real import MSRC12
 
 TOLERANCE_S = 1.5
 

@@ -5,7 +5,6 @@ They are for validation only; no weight that ships has seen them.
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +13,10 @@ import numpy as np
 from agent_server.domain.arrays import Float32
 from agent_server.domain.gesture import GESTURES, IDLE
 from agent_server.domain.motion import CLASSIFIED_FRAMES, RATE_HZ, SEEN_FRAMES
-from agent_server.domain.skeleton import CORE_JOINTS, CoreJoint
-from agent_server.errors import InvalidInput
+from agent_server.domain.skeleton import CoreJoint
 from agent_server.skeleton.readers.msrc12 import read_msrc12
-from agent_server.skeleton.readers.source import SourceRecording
 from agent_server.skeleton.readers.utd_mhad import read_utd_mhad
-from agent_server.skeleton.resample import Resampler
-from agent_server.skeleton.retarget import Retargeter
+from models.data.real import core_stream, source_files
 from models.evaluation.gestures import (
     THRESHOLD,
     Classify,
@@ -41,31 +37,6 @@ UTD_MHAD = {
 }
 BEFORE_TAG_FRAMES = 1.5 * RATE_HZ
 """MSRC-12 windows start this long before the tag."""
-
-
-@dataclass(frozen=True, slots=True)
-class CoreStream:
-    """A recording as the models see it.
-
-    Attributes:
-        stamps_ns: Shape (T,), on the grid of 40 ms; a pause starts a new grid.
-        positions: Shape (T, 9, 3), metres in the camera frame.
-    """
-
-    stamps_ns: np.ndarray
-    positions: Float32
-
-
-def core_stream(recording: SourceRecording) -> CoreStream:
-    """Retarget and resample a recording just as the server does."""
-    retargeter, resampler = Retargeter(), Resampler()
-    frames = []
-    for frame in recording.frames:
-        core = retargeter.push(frame)
-        if core is not None:
-            frames += resampler.push(core)
-    positions = np.array([f.positions for f in frames], np.float32).reshape(-1, CORE_JOINTS, 3)
-    return CoreStream(np.array([f.stamp_ns for f in frames], np.int64), positions)
 
 
 def msrc12_windows(data: Path) -> tuple[Float32, np.ndarray]:
@@ -149,15 +120,3 @@ def _share(values: list[bool]) -> float:
 
 def _counts(names: list[str]) -> dict[str, int]:
     return {name: names.count(name) for name in GESTURES if name in names}
-
-
-def source_files(folder: Path, pattern: str) -> list[Path]:
-    """Files of a set, sorted.
-
-    Raises:
-        InvalidInput: If there is none.
-    """
-    files = sorted(folder.glob(pattern))
-    if not files:
-        raise InvalidInput(f"{folder} holds no {pattern}: give the folder of the sets as --data")
-    return files

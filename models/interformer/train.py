@@ -9,7 +9,7 @@ import torch
 import torch.nn.functional as F
 from torch import nn
 
-from agent_server.domain.gesture import GESTURES, IDLE
+from agent_server.domain.gesture import IDLE
 from agent_server.domain.motion import PREDICTED_FRAMES, SEEN_FRAMES
 from agent_server.errors import InvalidInput
 from models.data.windows import AMBIGUOUS, Augmentation, WindowSet, augment
@@ -21,7 +21,6 @@ from models.training.schedule import warm_cosine
 from models.training.updater import Updater
 
 AUGMENTATION = Augmentation(yaw=0.35, scale=0.1, noise_m=0.02, drop=0.08)
-IDLE_INDEX = GESTURES.index(IDLE)
 LARGEST_GRADIENT = 1.0
 
 
@@ -37,10 +36,12 @@ class Pools:
     Attributes:
         windows: All of them.
         by_class: Index of the windows of each class.
+        idle: Which class is idle, or None.
     """
 
     windows: WindowSet
     by_class: tuple[torch.Tensor, ...]
+    idle: int | None
 
     @classmethod
     def of(cls, windows: WindowSet) -> "Pools":
@@ -49,17 +50,22 @@ class Pools:
         Raises:
             InvalidInput: If a class has no window.
         """
-        by_class = tuple((windows.labels == c).nonzero()[:, 0] for c in range(len(GESTURES)))
-        for name, pool in zip(GESTURES, by_class, strict=True):
+        classes = windows.classes
+        by_class = tuple((windows.labels == c).nonzero()[:, 0] for c in range(len(classes)))
+        for name, pool in zip(classes, by_class, strict=True):
             if not len(pool):
                 raise InvalidInput(f"no training window shows {name}: give more sequences")
-        return cls(windows, by_class)
+        return cls(windows, by_class, classes.index(IDLE) if IDLE in classes else None)
 
     def draw(self, batch: int, idle: float, generator: torch.Generator) -> torch.Tensor:
-        """Indices of a batch with a share of ``idle`` and the gestures in equal parts."""
-        others = torch.randint(IDLE_INDEX, (batch,), generator=generator)
+        """Indices of a batch with a share of ``idle``, if it is a class, and all others alike."""
+        gestures = [c for c in range(len(self.by_class)) if c != self.idle]
+        classes = torch.tensor(gestures)[
+            torch.randint(len(gestures), (batch,), generator=generator)
+        ]
         is_idle = torch.rand(batch, generator=generator) < idle
-        classes = torch.where(is_idle, IDLE_INDEX, others)
+        if self.idle is not None:
+            classes = torch.where(is_idle, self.idle, classes)
         spot = torch.rand(batch, generator=generator)
         picked = [
             self.by_class[c][int(s * len(self.by_class[c]))]
@@ -171,8 +177,7 @@ class ClassifierLearner:
         config, training = self.config, self.training
         index = self.pools.draw(config.batch, config.idle, generator)
         observed, _ = augment(*training.frames(index), AUGMENTATION, generator)
-        since = training.since_onset[index]
-        undecided = ((since < 0) & (since > -PREDICTED_FRAMES)).to(self.device)
+        undecided = training.undecided[index].to(self.device)
         observed = observed.to(self.device)
         motion = complete(self.predictor, observed, config, undecided, generator)
         return self.trainer.step(motion, training.labels[index].to(self.device))

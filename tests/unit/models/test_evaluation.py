@@ -5,7 +5,7 @@ torch = pytest.importorskip("torch", reason="needs the train extra")
 
 from agent_server.domain.gesture import GESTURES, IDLE  # noqa: E402
 from agent_server.domain.skeleton import CoreJoint  # noqa: E402
-from models.data.windows import Recording  # noqa: E402
+from models.data.windows import Recording, Stretch  # noqa: E402
 from models.evaluation.forecasters import Forecaster, zero_velocity  # noqa: E402
 from models.evaluation.gestures import (  # noqa: E402
     calibration_error,
@@ -156,10 +156,10 @@ def by_height(motion: np.ndarray) -> np.ndarray:
 def test_delays_run_from_onset_to_the_end_of_the_deciding_window() -> None:
     motion = raised(0.5)
     takes = [
-        Recording(motion, motion, "hello", 40, 110, "v00"),
-        Recording(motion, motion, "hot", 40, 110, "v00"),
-        Recording(raised(0.1), raised(0.1), "hello", 40, 110, "v00"),
-        Recording(motion, motion, IDLE, 40, 110, "v00"),
+        Recording(motion, motion, (Stretch("hello", 40, 110),), "v00"),
+        Recording(motion, motion, (Stretch("hot", 40, 110),), "v00"),
+        Recording(raised(0.1), raised(0.1), (Stretch("hello", 40, 110),), "v00"),
+        Recording(motion, motion, (), "v00"),
     ]
     result = evaluate_decisions(by_height, hold_last, takes)
     assert (result["right"], result["wrong"], result["missed"]) == (0.3333, 0.3333, 0.3333)

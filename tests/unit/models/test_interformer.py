@@ -40,7 +40,8 @@ def labelled(repeats: int = 8) -> WindowSet:
     frames += torch.randn(frames.shape, generator=torch.Generator().manual_seed(0)) * 0.01
     flat = frames.reshape(-1, 9, 3)
     starts = torch.arange(count) * 75
-    return WindowSet(flat, flat, starts, labels, torch.full((count,), 20), torch.arange(count))
+    undecided = torch.zeros(count, dtype=torch.bool)
+    return WindowSet(flat, flat, starts, labels, undecided, GESTURES)
 
 
 def test_the_mask_is_self_and_neighbours() -> None:

@@ -46,7 +46,7 @@ def waving(count: int = 6, frames: int = 100) -> WindowSet:
         motion[:, 8] += swing
         motion[:, 5] -= 0.5 * swing
         motion = (motion + np.array([0.0, 0.0, 2.0])).astype(np.float32)
-        takes.append(Recording(motion, motion, None, 0, 0, "v00"))
+        takes.append(Recording(motion, motion, None, "v00"))
     return cut(takes)
 
 

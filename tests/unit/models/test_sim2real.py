@@ -9,8 +9,8 @@ pytest.importorskip("torch", reason="needs the train extra")
 from agent_server.domain.gesture import GESTURES
 from agent_server.errors import InvalidInput
 from agent_server.skeleton.readers.source import SourceRecording, single_body
+from models.data.real import core_stream
 from models.evaluation.sim2real import (
-    core_stream,
     msrc12_windows,
     sim2real_report,
     utd_mhad_streams,
