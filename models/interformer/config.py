@@ -1,11 +1,15 @@
 """Configurations of the classifier."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 from agent_server.domain.gesture import GESTURES
 from agent_server.domain.motion import CLASSIFIED_FRAMES
 from agent_server.domain.skeleton import CORE_JOINTS
 from agent_server.errors import ConfigError
+from models.data.windows import Augmentation
+
+AUGMENTATION = Augmentation(yaw=0.35, scale=0.1, noise_m=0.02, drop=0.08)
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,21 +65,24 @@ class TrainConfig:
 
     Attributes:
         network: Shape of the network.
+        futures: What completes the seen second: ``predicted`` frames, the ``true`` ones, or the
+            last seen frame ``held``.
         steps: Updates.
         batch: Windows an update.
         learning_rate: Peak rate (AdamW, warm-up, then a cosine to zero).
         weight_decay: Of all weights.
         smoothing: Share of the label that is spread over all classes.
-        true_future: Share of windows that end in true frames.
-        last_frame: Share of windows completed by the last seen frame, as the server does when
-            it has no predictor; the rest end in predicted frames.
-        idle: Share of idle windows in a batch.
+        true_future: Share of predicted futures that are replaced by true frames, and ...
+        last_frame: ... by the last seen frame, as the server does when it has no predictor.
+        idle: Share of idle windows in a batch, where idle is a class.
+        augmentation: How windows are varied.
         ema: Decay of the averaged weights.
         validate_every: Updates between two validations.
         synthetic_sequences: Takes of virtual people to train on.
     """
 
     network: NetworkConfig = NetworkConfig()
+    futures: Literal["predicted", "true", "held"] = "predicted"
     steps: int = 7_000
     batch: int = 64
     learning_rate: float = 1e-3
@@ -84,6 +91,7 @@ class TrainConfig:
     true_future: float = 0.2
     last_frame: float = 0.1
     idle: float = 0.65
+    augmentation: Augmentation = AUGMENTATION
     ema: float = 0.998
     validate_every: int = 500
     synthetic_sequences: int = 6_000
@@ -95,14 +103,9 @@ class TrainConfig:
                 "shares that add up to at most 1"
             )
 
-    @property
-    def seen_only(self) -> bool:
-        """Whether the network gets nothing but the seen second."""
-        return self.last_frame == 1
-
 
 CONFIGS: dict[str, TrainConfig] = {
     "server": TrainConfig(),
-    "seen_only": TrainConfig(true_future=0.0, last_frame=1.0),
+    "seen_only": TrainConfig(futures="held"),
 }
 """``seen_only`` is the same network on the same budget that gets nothing but the seen second."""

@@ -12,7 +12,7 @@ from torch import nn
 from agent_server.domain.gesture import IDLE
 from agent_server.domain.motion import PREDICTED_FRAMES, SEEN_FRAMES
 from agent_server.errors import InvalidInput
-from models.data.windows import AMBIGUOUS, Augmentation, WindowSet, augment
+from models.data.windows import AMBIGUOUS, WindowSet, augment
 from models.interformer.config import NetworkConfig, TrainConfig
 from models.interformer.network import Classifier
 from models.training.fit import fit, training_device
@@ -20,8 +20,11 @@ from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
 from models.training.updater import Updater
 
-AUGMENTATION = Augmentation(yaw=0.35, scale=0.1, noise_m=0.02, drop=0.08)
 LARGEST_GRADIENT = 1.0
+
+
+Predict = Callable[[torch.Tensor], torch.Tensor]
+"""Seen (B, 25, 9, 3) -> future (B, 50, 9, 3)."""
 
 
 def hold_last(seen: torch.Tensor) -> torch.Tensor:
@@ -75,21 +78,23 @@ class Pools:
 
 
 def complete(
-    predictor: nn.Module,
+    predictor: Predict,
     observed: torch.Tensor,
     config: TrainConfig,
     undecided: torch.Tensor,
     generator: torch.Generator,
 ) -> torch.Tensor:
-    """Windows as the classifier gets them: seen frames, then predicted, held or true ones.
+    """Windows as the classifier gets them in training: seen frames, then what it is to expect.
 
     Args:
         predictor: Frozen; seen (B, 25, 9, 3) -> future (B, 50, 9, 3).
         observed: Shape (B, 75, 9, 3).
-        config: Its shares of true, held and predicted futures.
+        config: Its kind of future, and the shares of true and held ones among predicted ones.
         undecided: Shape (B,), whether the true future shows what the label does not say.
         generator: Where the choice comes from.
     """
+    if config.futures != "predicted":
+        return completed(predictor, observed, config)
     seen = observed[:, :SEEN_FRAMES]
     with torch.no_grad():
         predicted = predictor(seen)
@@ -98,21 +103,36 @@ def complete(
     hold = draw >= 1 - config.last_frame
     future = torch.where(keep[:, None, None, None], observed[:, SEEN_FRAMES:], predicted)
     future = torch.where(hold[:, None, None, None], hold_last(seen), future)
-    return torch.cat([seen, future], dim=1)
+    return torch.cat([seen, future], dim=1)[:, : config.network.frames]
+
+
+@torch.no_grad()
+def completed(predictor: Predict, observed: torch.Tensor, config: TrainConfig) -> torch.Tensor:
+    """Windows as the classifier gets them in use, cut to the frames that it takes."""
+    seen = observed[:, :SEEN_FRAMES]
+    match config.futures:
+        case "true":
+            motion = observed
+        case "held":
+            motion = torch.cat([seen, hold_last(seen)], dim=1)
+        case "predicted":
+            motion = torch.cat([seen, predictor(seen)], dim=1)
+    return motion[:, : config.network.frames]
 
 
 @torch.no_grad()
 def window_logits(
     classifier: nn.Module,
-    predictor: Callable[[torch.Tensor], torch.Tensor],
+    predictor: Predict,
     windows: WindowSet,
+    config: TrainConfig,
     device: torch.device,
 ) -> torch.Tensor:
-    """Logits (N, C) with the futures that ``predictor`` gives for the seen frames."""
+    """Logits (N, C) of windows completed as ``config`` says."""
     logits = []
     for index in torch.split(torch.arange(len(windows)), 512):
-        seen = windows.frames(index)[0][:, :SEEN_FRAMES].to(device)
-        logits.append(classifier(torch.cat([seen, predictor(seen)], dim=1)).cpu())
+        observed = windows.frames(index)[0].to(device)
+        logits.append(classifier(completed(predictor, observed, config)).cpu())
     return torch.cat(logits)
 
 
@@ -176,7 +196,7 @@ class ClassifierLearner:
         """One update on windows of which some are undecided."""
         config, training = self.config, self.training
         index = self.pools.draw(config.batch, config.idle, generator)
-        observed, _ = augment(*training.frames(index), AUGMENTATION, generator)
+        observed, _ = augment(*training.frames(index), config.augmentation, generator)
         undecided = training.undecided[index].to(self.device)
         observed = observed.to(self.device)
         motion = complete(self.predictor, observed, config, undecided, generator)
@@ -184,9 +204,8 @@ class ClassifierLearner:
 
     def validate(self) -> dict[str, float]:
         """Balanced loss, which is the score, and balanced accuracy."""
-        futures = hold_last if self.config.seen_only else self.predictor
         network = self.trainer.updater.ema.network
-        logits = window_logits(network, futures, self.validation, self.device)
+        logits = window_logits(network, self.predictor, self.validation, self.config, self.device)
         loss = balanced_loss(logits, self.validation.labels)
         accuracy = balanced_accuracy(logits, self.validation.labels)
         return {"score": loss, "validation_loss": loss, "validation_accuracy": accuracy}

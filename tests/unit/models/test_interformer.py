@@ -19,6 +19,7 @@ from models.interformer.train import (  # noqa: E402
     Pools,
     Trainer,
     complete,
+    completed,
     hold_last,
     load_classifier,
     train,
@@ -99,15 +100,30 @@ def test_windows_are_completed_in_the_shares_asked_for() -> None:
     def zero(seen: torch.Tensor) -> torch.Tensor:
         return torch.zeros(len(seen), 50, 9, 3)
 
-    motion = complete(zero, observed, config, never, generator)  # type: ignore[arg-type]
+    motion = complete(zero, observed, config, never, generator)
     future = motion[:, 25:]
     true = (future == observed[:, 25:]).all(-1).all(-1).all(-1)
     held = (future == hold_last(observed[:, :25])).all(-1).all(-1).all(-1)
     assert float(true.float().mean()) == pytest.approx(0.2, abs=0.03)
     assert float(held.float().mean()) == pytest.approx(0.1, abs=0.03)
     assert torch.equal(motion[:, :25], observed[:, :25])
-    motion = complete(zero, observed, config, ~never, generator)  # type: ignore[arg-type]
+    motion = complete(zero, observed, config, ~never, generator)
     assert not (motion[:, 25:] == observed[:, 25:]).all(-1).all(-1).all(-1).any()
+
+
+def test_rows_get_the_futures_and_the_frames_that_they_ask_for() -> None:
+    observed = torch.randn(5, 75, 9, 3)
+
+    def zero(seen: torch.Tensor) -> torch.Tensor:
+        return torch.zeros(len(seen), 50, 9, 3)
+
+    assert torch.equal(completed(zero, observed, TrainConfig(futures="true")), observed)
+    held = completed(zero, observed, TrainConfig(futures="held"))
+    assert torch.equal(held[:, 25:], hold_last(observed[:, :25]))
+    assert not completed(zero, observed, TrainConfig())[:, 25:].any()
+    short = TrainConfig(futures="held", network=NetworkConfig(frames=25))
+    assert torch.equal(completed(zero, observed, short), observed[:, :25])
+    assert Classifier(short.network)(observed[:, :25]).shape == (5, 7)
 
 
 def test_a_few_windows_are_learnt_by_heart() -> None:
