@@ -142,6 +142,22 @@ class DecideSettings(_Section, frozen=True):
         _require(self.cooldown_s >= 0, "cooldown_s must not be negative")
 
 
+class ModelSettings(_Section, frozen=True):
+    """Which models run.
+
+    Attributes:
+        predictor: Folder of the bundle that continues motion; None takes the one that ships.
+        classifier: Folder of the bundle that names it; None takes the one that ships.
+    """
+
+    predictor: str | None = None
+    classifier: str | None = None
+
+    def __post_init__(self) -> None:
+        for name in self.__struct_fields__:
+            _require(getattr(self, name) != "", f"{name} must name the folder of a bundle")
+
+
 class ServerSettings(_Section, frozen=True):
     """The process and what it takes from clients.
 
@@ -178,7 +194,7 @@ class ServerSettings(_Section, frozen=True):
 
 
 class Settings(_Section, frozen=True):
-    """All settings.
+    """All settings. Paths are relative to the folder in which the server is started.
 
     Attributes:
         rules: Path of the room's rule file; None takes the one that ships.
@@ -188,6 +204,7 @@ class Settings(_Section, frozen=True):
     subject: SubjectSettings = SubjectSettings()
     gate: GateSettings = GateSettings()
     decide: DecideSettings = DecideSettings()
+    models: ModelSettings = ModelSettings()
     server: ServerSettings = ServerSettings()
     rules: str | None = None
 

@@ -46,7 +46,7 @@ def demo(
 ) -> None:
     """Serve, play a recorded person in real time, and show what the agent makes of it."""
     recording = open_recording(file or assets.demo_recording())
-    settings = settings_with(None, None, port)
+    settings = settings_with(None, port=port)
     hub = build_hub(settings, load_models())
     main = _demo(hub, bind(settings), recording, rounds, browser=browser)
     run(main, interrupted_status=0)

@@ -10,6 +10,7 @@ from agent_server import __version__
 from agent_server.cli.bench import bench
 from agent_server.cli.convert import convert
 from agent_server.cli.demo import demo
+from agent_server.cli.gestures import gestures
 from agent_server.cli.recover import recover
 from agent_server.cli.replay import replay
 from agent_server.cli.serve import serve
@@ -24,6 +25,7 @@ app = typer.Typer(
 )
 for command in (demo, serve, replay, convert, recover):
     app.command()(command)
+app.add_typer(gestures)
 app.add_typer(bench)
 
 

@@ -4,13 +4,15 @@ import asyncio
 import sys
 from collections.abc import Coroutine
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 import typer
 
-from agent_server.config import Settings, load_settings
+from agent_server.config import ModelSettings, ServerSettings, Settings, load_settings
 from agent_server.errors import ConfigError
+
+_Section = TypeVar("_Section", ServerSettings, ModelSettings)
 
 ConfigOption = Annotated[
     Path | None, typer.Option("--config", "-c", help="TOML file with settings.")
@@ -18,21 +20,52 @@ ConfigOption = Annotated[
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON on stdout and nothing else.")]
 HostOption = Annotated[str | None, typer.Option(help="Address to listen on.")]
 PortOption = Annotated[int | None, typer.Option(help="Port to listen on; 0 for any free one.")]
+PredictorOption = Annotated[
+    Path | None, typer.Option(metavar="BUNDLE", help="Predictor instead of the one that ships.")
+]
+ClassifierOption = Annotated[
+    Path | None,
+    typer.Option(metavar="BUNDLE", help="Classifier to use, for example one that was taught."),
+]
+RulesOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="The room's rules: docs/rules.md.")
+]
 
 
-def settings_with(config: Path | None, host: str | None, port: int | None) -> Settings:
-    """Settings from a file, with the address overridden from the command line.
+def settings_with(
+    config: Path | None,
+    *,
+    host: str | None = None,
+    port: int | None = None,
+    predictor: Path | None = None,
+    classifier: Path | None = None,
+    rules: Path | None = None,
+) -> Settings:
+    """Settings from a file, with what the command line names in their place.
 
     Raises:
-        ConfigError: If the file or the address is wrong.
+        ConfigError: If the file or a value is wrong.
     """
     settings = load_settings(config)
-    changes = {name: value for name, value in (("host", host), ("port", port)) if value is not None}
     try:
-        server = msgspec.structs.replace(settings.server, **changes)
+        return msgspec.structs.replace(
+            settings,
+            server=_changed(settings.server, host=host, port=port),
+            models=_changed(settings.models, predictor=predictor, classifier=classifier),
+            rules=settings.rules if rules is None else str(rules),
+        )
     except ValueError as error:
         raise ConfigError(str(error)) from error
-    return msgspec.structs.replace(settings, server=server)
+
+
+def _changed(section: _Section, **values: str | int | Path | None) -> _Section:
+    """A section of the settings with the values that are not None; a path becomes a text."""
+    given = {
+        name: str(value) if isinstance(value, Path) else value
+        for name, value in values.items()
+        if value is not None
+    }
+    return msgspec.structs.replace(section, **given)
 
 
 def run(main: Coroutine[Any, Any, None], *, interrupted_status: int = 130) -> None:

@@ -14,9 +14,17 @@ import typer
 from rich.console import Console
 
 from agent_server import __version__
-from agent_server.cli.options import ConfigOption, JsonOption, run
+from agent_server.cli.options import (
+    ClassifierOption,
+    ConfigOption,
+    JsonOption,
+    PredictorOption,
+    RulesOption,
+    run,
+    settings_with,
+)
 from agent_server.cli.story import Story
-from agent_server.config import Settings, load_settings
+from agent_server.config import Settings
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import NS_PER_S
@@ -48,6 +56,9 @@ def replay(
         typer.Option(metavar="URL", help="Send it to a running server instead."),
     ] = None,
     config: ConfigOption = None,
+    classifier: ClassifierOption = None,
+    predictor: PredictorOption = None,
+    rules: RulesOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Replay a recording and show its decisions; with --json one decision a line."""
@@ -59,7 +70,8 @@ def replay(
             raise ConfigError("--speed max and --to do not go together: a live server would skip")
         run(_send(recording, to, factor, show))
         return
-    for decision in _paced(_decide(recording, load_settings(config)), _factor(speed or "max")):
+    settings = settings_with(config, predictor=predictor, classifier=classifier, rules=rules)
+    for decision in _paced(_decide(recording, settings), _factor(speed or "max")):
         show(decision)
 
 
@@ -78,7 +90,7 @@ def _print_line(decision: m.DecisionBody) -> None:
 
 
 def _decide(recording: Recording, settings: Settings) -> Iterator[m.DecisionBody]:
-    models = load_models()
+    models = load_models(settings)
     recorded = recording.metadata.bundles
     for model in (models.predictor, models.classifier):
         if recorded.get(model.name, model.sha256) != model.sha256:

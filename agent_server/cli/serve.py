@@ -9,10 +9,13 @@ import typer
 from rich.console import Console
 
 from agent_server.cli.options import (
+    ClassifierOption,
     ConfigOption,
     HostOption,
     JsonOption,
     PortOption,
+    PredictorOption,
+    RulesOption,
     run,
     settings_with,
 )
@@ -24,6 +27,9 @@ def serve(
     config: ConfigOption = None,
     host: HostOption = None,
     port: PortOption = None,
+    classifier: ClassifierOption = None,
+    predictor: PredictorOption = None,
+    rules: RulesOption = None,
     record: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Record every session into a file of this folder."),
@@ -31,8 +37,10 @@ def serve(
     as_json: JsonOption = False,
 ) -> None:
     """Take sensors, renderers and monitors until stopped."""
-    settings = settings_with(config, host, port)
-    hub = build_hub(settings, load_models(), record)
+    settings = settings_with(
+        config, host=host, port=port, predictor=predictor, classifier=classifier, rules=rules
+    )
+    hub = build_hub(settings, load_models(settings), record)
     run(_serve(hub, bind(settings), as_json=as_json), interrupted_status=0)
 
 

@@ -5,6 +5,7 @@ import socket
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
+from importlib import resources
 from pathlib import Path
 
 import uvicorn
@@ -12,7 +13,7 @@ import uvicorn
 from agent_server import assets
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
-from agent_server.errors import ConfigError
+from agent_server.errors import ConfigError, RuleError
 from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
 from agent_server.scene.rulebook import Rules
 from agent_server.scene.rules import default_rules, load_rules
@@ -26,17 +27,21 @@ PREDICTOR = "ma_wgan_server"
 CLASSIFIER = "interformer_server"
 
 
-def load_models(bundles: Path | None = None) -> Models:
+def load_models(settings: Settings | None = None) -> Models:
     """Load and check the bundles that the server uses.
 
     Args:
-        bundles: Folder of the bundles; None takes those that ship.
+        settings: They may name other bundles than those that ship.
 
     Raises:
         BundleError: If a bundle is missing, altered or wrong.
     """
-    folder = bundles or assets.bundles()
-    return Models(OnnxPredictor(folder / PREDICTOR), OnnxClassifier(folder / CLASSIFIER))
+    shipped = assets.bundles()
+    chosen = (settings or Settings()).models
+    return Models(
+        OnnxPredictor(Path(chosen.predictor or shipped / PREDICTOR)),
+        OnnxClassifier(Path(chosen.classifier or shipped / CLASSIFIER)),
+    )
 
 
 def build_hub(settings: Settings, models: Models, record_to: Path | None = None) -> Hub:
@@ -62,12 +67,21 @@ def load_room(settings: Settings, models: Models) -> Rules:
     """Read the room's rules for the gestures that the classifier knows.
 
     Raises:
-        RuleError: If the rule file is wrong.
+        RuleError: If the rule file is wrong, or there is none and the room that ships reacts to
+            gestures that the classifier does not know.
     """
     known = models.classifier.labels
-    if settings.rules is None:
+    if settings.rules is not None:
+        return load_rules(Path(settings.rules), known)
+    try:
         return default_rules(known)
-    return load_rules(Path(settings.rules), known)
+    except RuleError as error:
+        raise RuleError(
+            f"the room that ships does not go with the classifier {models.classifier.name} "
+            f"({error}): copy {resources.files('agent_server.scene') / 'room.toml'}, leave rules "
+            "for the known gestures alone in it, add some for the new ones, and name the copy with "
+            "--rules FILE, or with rules = 'FILE' in the settings"
+        ) from error
 
 
 def bind(settings: Settings) -> socket.socket:

@@ -22,7 +22,8 @@ log = logging.getLogger(__name__)
 
 CLOSE_ABNORMAL = 1006
 FAREWELL_S = 2.0
-_SESSION_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+SESSION_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+SESSION_ID_RULE = "a session id has 1 to 64 letters, digits, '.', '_' and '-'"
 
 
 def websocket_router(hub: Hub) -> APIRouter:
@@ -42,11 +43,11 @@ def websocket_router(hub: Hub) -> APIRouter:
                 f"the client offers the subprotocols {', '.join(offered)}, this server speaks "
                 f"protocol {m.PROTOCOL}: {', '.join(CODECS)}",
             )
-        elif not _SESSION_ID.fullmatch(session_id):
+        elif not SESSION_ID.fullmatch(session_id):
             await link.dismiss(
                 c.CLOSE_BAD_HELLO,
                 "bad_session_id",
-                "a session id has 1 to 64 letters, digits, '.', '_' and '-'",
+                SESSION_ID_RULE,
             )
         elif not _is_role(role):
             await link.dismiss(
