@@ -26,8 +26,9 @@ FOLDS = 3
 EVERY = 4
 """Every fourth person is tested in a fold."""
 VALIDATION_PEOPLE = 2
-SHOWN_FRAMES = (-RATE_HZ, RATE_HZ // 2)
-"""In a stream, a gesture is taken to last from 1 s before its tag to 0.5 s after it."""
+BEFORE_FRAMES = 30
+AFTER_FRAMES = 12
+"""In a stream, a gesture is taken to last from 1.2 s before its tag to 0.5 s after it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,8 +150,7 @@ def _without_pauses(one: TaggedStream) -> list[Recording]:
         for mark in one.marks:
             at = round(one.frame_at(mark.stamp_ns)) - first
             if 0 <= at < end - first:
-                before, after = SHOWN_FRAMES
-                stretches.append(Stretch(mark.tag, at + before, at + after))
+                stretches.append(Stretch(mark.tag, at - BEFORE_FRAMES, at + AFTER_FRAMES))
         positions = one.stream.positions[first:end]
         parts.append(Recording(positions, positions, tuple(stretches), one.subject))
     return parts

@@ -128,6 +128,10 @@ class WindowSet:
         origin = observed[:, SEEN_FRAMES - 1, None, None, CoreJoint.NAVEL].clone()
         return observed - origin, clean - origin
 
+    def all(self) -> torch.Tensor:
+        """Every observed window, (N, 75, 9, 3), normalised."""
+        return self.frames(torch.arange(len(self)))[0]
+
 
 def cut(
     recordings: Iterable[Recording], stride: int = 1, classes: tuple[str, ...] = GESTURES

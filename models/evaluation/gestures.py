@@ -8,14 +8,16 @@ import torch
 
 from agent_server.config import DecideSettings, WindowSettings
 from agent_server.domain.arrays import Float32
-from agent_server.domain.gesture import GESTURES, HELLO, Classification
+from agent_server.domain.gesture import GESTURES, HELLO, IDLE, Classification
 from agent_server.domain.motion import FRAME_NS, RATE_HZ, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.stages.decide import GestureTracker, Phase
 from models.data.windows import AMBIGUOUS, Recording, WindowSet
 
 HOP_FRAMES = WindowSettings().hop
-THRESHOLD = DecideSettings().enter
+DECIDE = DecideSettings()
+REJECT = 0.5
+"""A single window whose best class is less probable than this is rejected: it counts as idle."""
 
 Predict = Callable[[Float32], Float32]
 """seen (B, 25, 9, 3) -> future (B, 50, 9, 3)."""
@@ -31,6 +33,13 @@ def hold_last(seen: Float32) -> Float32:
 def probabilities_of(classify: Classify, predict: Predict, seen: Float32) -> Float32:
     """Probabilities (N, C) of windows of which only the seen second (N, 25, 9, 3) is known."""
     return classify(np.concatenate([seen, predict(seen)], axis=1))
+
+
+def named_or_idle(probabilities: Float32, classes: Sequence[str] = GESTURES) -> list[str]:
+    """The class of each row (N, C); one that is not more probable than not counts as idle."""
+    best = probabilities.argmax(1)
+    sure = probabilities.max(1) > REJECT
+    return [classes[c] if s else IDLE for c, s in zip(best, sure, strict=True)]
 
 
 def labelled_windows(windows: WindowSet) -> tuple[Float32, Float32, np.ndarray]:
@@ -81,20 +90,26 @@ def sliding_seen(positions: Float32) -> tuple[Float32, np.ndarray]:
 
 
 def decisions(
-    probabilities: Float32, ends_ns: Sequence[int] | None = None
+    probabilities: Float32,
+    ends_ns: Sequence[int] | None = None,
+    *,
+    classes: tuple[str, ...] = GESTURES,
+    settings: DecideSettings = DECIDE,
 ) -> list[tuple[int, str]]:
     """Windows in which the live decision stage decides on a gesture, and which.
 
     Args:
         probabilities: Shape (N, C), a row a window.
         ends_ns: When each window ends; None stands for one every 0.2 s.
+        classes: Names of the columns.
+        settings: Of the decision stage.
     """
     if ends_ns is None:
         ends_ns = range(0, len(probabilities) * HOP_FRAMES * FRAME_NS, HOP_FRAMES * FRAME_NS)
-    tracker = GestureTracker(DecideSettings(), {HELLO})
+    tracker = GestureTracker(settings, {HELLO})
     found: list[tuple[int, str]] = []
     for window, (row, end_ns) in enumerate(zip(probabilities, ends_ns, strict=True)):
-        tracking = tracker.push(Classification(GESTURES, row), end_ns)
+        tracking = tracker.push(Classification(classes, row), end_ns)
         if tracking.phase is Phase.ACTIVE:
             found.append((window, tracking.gesture))
             tracker.mark_handled()

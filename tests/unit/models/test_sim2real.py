@@ -40,9 +40,8 @@ def test_a_missing_set_is_named(tmp_path: Path) -> None:
 
 
 def test_the_report_counts_by_label(monkeypatch: pytest.MonkeyPatch) -> None:
-    def windows(data: Path) -> tuple[np.ndarray, np.ndarray]:
-        labels = [GESTURES.index(n) for n in ("bright", "loud", "idle", "idle")]
-        return np.zeros((4, 75, 9, 3), np.float32), np.array(labels)
+    def windows(data: Path) -> tuple[np.ndarray, list[str]]:
+        return np.zeros((4, 75, 9, 3), np.float32), ["bright", "loud", "idle", "idle"]
 
     monkeypatch.setattr("models.evaluation.sim2real.msrc12_windows", windows)
     monkeypatch.setattr(
@@ -58,6 +57,28 @@ def test_the_report_counts_by_label(monkeypatch: pytest.MonkeyPatch) -> None:
     assert report["balanced_accuracy"] == 0.25
     assert report["idle_false_reactions"] == 1.0
     assert report["n"] == {"msrc12": 4, "utd_mhad": 1}
+
+
+def test_each_reading_has_its_own_figures(monkeypatch: pytest.MonkeyPatch) -> None:
+    windows = np.zeros((2, 75, 9, 3), np.float32)
+    windows[0, 40:] = 1.0  # what shows that it is bright lies after the seen second
+    monkeypatch.setattr(
+        "models.evaluation.sim2real.msrc12_windows", lambda data: (windows, ["bright", "loud"])
+    )
+    monkeypatch.setattr(
+        "models.evaluation.sim2real.utd_mhad_streams",
+        lambda data: iter([(name, np.zeros((60, 9, 3), np.float32)) for name in ("hello", "idle")]),
+    )
+
+    def bright_if_moved(motion: np.ndarray) -> np.ndarray:
+        moved = np.abs(motion).max(axis=(1, 2, 3)) > 0
+        at = np.where(moved, GESTURES.index("bright"), GESTURES.index("idle"))
+        return np.eye(len(GESTURES), dtype=np.float32)[at]
+
+    report = sim2real_report(bright_if_moved, lambda seen: np.repeat(seen[:, -1:], 50, 1), Path())
+    recalls = {name: row["recall"]["bright"] for name, row in report["readings"].items()}
+    assert recalls == {"3s": 1.0, "1s+2s_predicted": 0.0, "live": 1.0}
+    assert report["recall"] == report["readings"]["3s"]["recall"]
 
 
 @pytest.mark.skipif(DATA is None, reason="needs utd_mhad (AGENT_SERVER_DATA)")

@@ -1,0 +1,1 @@
+"""The command line ``python -m models``: one file a group of commands."""

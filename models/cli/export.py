@@ -1,0 +1,74 @@
+"""``python -m models export``."""
+
+from pathlib import Path
+from typing import Annotated
+
+import torch
+import typer
+
+from models.cli.options import (
+    CACHE,
+    CLASSIFIER,
+    PREDICTOR,
+    CacheOption,
+    DataOption,
+    PredictorBundleOption,
+    show,
+)
+from models.export.classifier import export_classifier
+from models.export.predictor import export_predictor
+
+app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")
+
+RunOption = Annotated[Path, typer.Option("--run", help="Run to export.")]
+RunsOption = Annotated[list[Path], typer.Option("--run", help="Run to export; may be repeated.")]
+VersionOption = Annotated[str, typer.Option("--version", help="Version of the model.")]
+
+
+@app.command("ma_wgan")
+def export_ma_wgan(
+    data: DataOption,
+    run: RunsOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = PREDICTOR,
+    version: VersionOption = "0.1.0",
+    cache: CacheOption = CACHE,
+) -> None:
+    """Export, check and measure a manifold-aware GAN, or the average of several."""
+    _export("ma_wgan", run, out, version, data, cache)
+
+
+@app.command("simlpe")
+def export_simlpe(
+    data: DataOption,
+    run: RunsOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    version: VersionOption = "0.1.0",
+    cache: CacheOption = CACHE,
+) -> None:
+    """Export, check and measure a siMLPe."""
+    _export("simlpe", run, out, version, data, cache)
+
+
+def _export(
+    family: str, runs: list[Path], out: Path, version: str, data: Path, cache: Path
+) -> None:
+    torch.set_num_threads(1)
+    show(export_predictor(family, runs, out, version, data, cache).results, as_json=False)
+
+
+@app.command("interformer")
+def export_interformer(
+    data: DataOption,
+    run: RunOption,
+    predictor: PredictorBundleOption = PREDICTOR,
+    seen_only: Annotated[
+        Path | None, typer.Option("--seen-only", help="Run of the classifier of 1 s alone.")
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = CLASSIFIER,
+    version: VersionOption = "0.1.0",
+    cache: CacheOption = CACHE,
+) -> None:
+    """Calibrate, export, check and measure a classifier."""
+    torch.set_num_threads(1)
+    manifest = export_classifier(run, predictor, seen_only, out, version, data, cache)
+    show(manifest.results, as_json=False)
