@@ -139,7 +139,7 @@ def _absence(hub: Hub, session: str, wait_s: float, where: str) -> str:
 
 def _report(takes: TakeRecorder, console: Console, *, as_json: bool) -> None:
     """Say what is kept, however it ended."""
-    labels, is_kept = takes.director.labels, bool(takes.director.labels)
+    labels, is_kept = takes.labels, bool(takes.labels)
     if as_json:
         report = {
             "file": str(takes.path) if is_kept else None,

@@ -101,7 +101,9 @@ class TakeDirector:
         if not self._lock.offer(frame.body_id, navel_distance(frame), frame.originating_ns):
             return cues
         core = self._retargeter.push(frame)
-        if core is not None:
+        # Some sensors go on sending a body that they have lost, with no joint tracked.
+        if core is not None and core.confidence.any():
+            self._seen_ns = core.stamp_ns
             for on_grid in self._resampler.push(core):
                 cues += self._step(on_grid)
         return cues
@@ -130,7 +132,7 @@ class TakeDirector:
 
     def _step(self, frame: CoreFrame) -> list[Cue]:
         """Take a frame of the body on the 40 ms grid."""
-        now_ns = self._seen_ns = frame.stamp_ns
+        now_ns = frame.stamp_ns
         self.followed += 1
         is_due = now_ns >= self._until_ns
         match self._stage:

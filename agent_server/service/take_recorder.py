@@ -2,12 +2,14 @@
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from agent_server import __version__
 from agent_server.clock import Clock
 from agent_server.domain.affect import AffectSample
+from agent_server.domain.label import Label
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import RecordingError
 from agent_server.recording.director import TakeDirector
@@ -51,6 +53,7 @@ class TakeRecorder(NoJournal):
     Attributes:
         path: The file.
         frames: How many frames were written, of all bodies.
+        labels: What was written of labels.
         ended: Set when no more is written: everything is there, the disk failed, or the
             session was closed.
         failure: Why the file could not be written, or None.
@@ -72,6 +75,7 @@ class TakeRecorder(NoJournal):
         self.path = folder / f"{plan.gesture}-{plan.subject}-{moment}.mcap"
         self.director = TakeDirector(plan)
         self.frames = 0
+        self.labels: list[Label] = []
         self.ended = asyncio.Event()
         self.failure: RecordingError | None = None
         self._plan = plan
@@ -127,6 +131,7 @@ class TakeRecorder(NoJournal):
             if isinstance(cue, Taken) and self._writer is not None:
                 self._writer.append_label(cue.label)
                 self._writer.flush()
+                self.labels.append(cue.label)
             self._tell(cue)
             if isinstance(cue, Done):
                 self._finish()
@@ -137,7 +142,7 @@ class TakeRecorder(NoJournal):
         if self._writer is None:
             return
         self._writer.close()
-        if not self.director.labels:
+        if not self.labels:
             self.path.unlink()
 
     def _write(self, action: Callable[[], None]) -> None:
@@ -149,6 +154,9 @@ class TakeRecorder(NoJournal):
         except RecordingError as error:
             self.failure = error
             self.ended.set()
+            if self._writer is not None:
+                with suppress(RecordingError):
+                    self._writer.close()
 
     def _metadata(self, frame: SkeletonFrame) -> RecordingMetadata:
         return RecordingMetadata(
