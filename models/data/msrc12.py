@@ -5,7 +5,7 @@ A tag marks the moment at which a gesture has been performed. For benchmarks onl
 that ships has seen these people.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,8 +16,8 @@ from agent_server.domain.gesture import IDLE
 from agent_server.domain.motion import CLASSIFIED_FRAMES, FRAME_NS, RATE_HZ
 from agent_server.skeleton.readers.msrc12 import read_msrc12
 from agent_server.skeleton.readers.source import Mark
-from models.data.real import CoreStream, core_stream, source_files
-from models.data.windows import Recording, Stretch, WindowSet
+from models.data.real import CoreStream, core_stream, labelled_recordings, source_files
+from models.data.windows import Recording, WindowSet
 
 TAGS = tuple(f"G{number}" for number in range(1, 13))
 BEFORE_TAG_FRAMES = 1.5 * RATE_HZ
@@ -71,7 +71,7 @@ def read_streams(data: Path) -> list[TaggedStream]:
     streams = []
     for path in source_files(data / "msrc12", "*.csv*"):
         recording = read_msrc12(path)
-        stream = core_stream(recording)
+        stream = core_stream(recording.frames)
         streams.append(TaggedStream(path.name, recording.subject, stream, recording.marks))
     return streams
 
@@ -126,7 +126,12 @@ def tagged_recordings(
     streams: Sequence[TaggedStream], subjects: Collection[str]
 ) -> list[Recording]:
     """Whole recordings with a stretch around each tag, cut where the sensor has paused."""
-    return [part for one in streams if one.subject in subjects for part in _without_pauses(one)]
+    return [
+        part
+        for one in streams
+        if one.subject in subjects
+        for part in labelled_recordings(one.stream, _spans(one.marks), one.subject)
+    ]
 
 
 STREAM_CLASSES = (*TAGS, IDLE)
@@ -141,16 +146,12 @@ def _is_whole(stream: CoreStream, start: int) -> bool:
     return bool(span_ns == (CLASSIFIED_FRAMES - 1) * FRAME_NS)
 
 
-def _without_pauses(one: TaggedStream) -> list[Recording]:
-    stamps = one.stream.stamps_ns
-    breaks = (np.flatnonzero(np.diff(stamps) != FRAME_NS) + 1).tolist()
-    parts = []
-    for first, end in zip([0, *breaks], [*breaks, len(stamps)], strict=True):
-        stretches = []
-        for mark in one.marks:
-            at = round(one.frame_at(mark.stamp_ns)) - first
-            if 0 <= at < end - first:
-                stretches.append(Stretch(mark.tag, at - BEFORE_FRAMES, at + AFTER_FRAMES))
-        positions = one.stream.positions[first:end]
-        parts.append(Recording(positions, positions, tuple(stretches), one.subject))
-    return parts
+def _spans(marks: Iterable[Mark]) -> list[tuple[str, int, int]]:
+    return [
+        (
+            mark.tag,
+            mark.stamp_ns - BEFORE_FRAMES * FRAME_NS,
+            mark.stamp_ns + AFTER_FRAMES * FRAME_NS,
+        )
+        for mark in marks
+    ]

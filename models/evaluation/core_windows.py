@@ -59,7 +59,7 @@ def _msrc12_stretches(data: Path) -> Iterable[tuple[str, Float32]]:
     for path in source_files(data / "msrc12", "*.csv*"):
         recording = read_msrc12(path)
         gesture = min((mark.tag for mark in recording.marks), default="untagged")
-        stream = core_stream(recording)
+        stream = core_stream(recording.frames)
         breaks = np.flatnonzero(np.diff(stream.stamps_ns) > FRAME_NS) + 1
         for stretch in np.split(stream.positions, breaks):
             yield gesture, stretch

@@ -16,6 +16,8 @@ from models.data.windows import AMBIGUOUS, Recording, WindowSet
 
 HOP_FRAMES = WindowSettings().hop
 DECIDE = DecideSettings()
+ANSWER_FRAMES = 10
+"""A gesture may still be decided on this many frames after its offset."""
 REJECT = 0.5
 """A single window whose best class is less probable than this is rejected: it counts as idle."""
 
@@ -52,10 +54,15 @@ def labelled_windows(windows: WindowSet) -> tuple[Float32, Float32, np.ndarray]:
     return motion[:, :SEEN_FRAMES], motion, windows.labels[index].numpy()
 
 
-def scores(probabilities: Float32, labels: np.ndarray) -> dict[str, Any]:
-    """Accuracy, its balanced form, recall a class, calibration error and confusion."""
+def scores(
+    probabilities: Float32, labels: np.ndarray, classes: Sequence[str] = GESTURES
+) -> dict[str, Any]:
+    """Accuracy, its balanced form, recall a class, calibration error and confusion.
+
+    ``rejecting`` is the accuracy with the reject option, and the share that it accepts.
+    """
     guess = probabilities.argmax(1)
-    confusion = np.zeros((len(GESTURES), len(GESTURES)), dtype=int)
+    confusion = np.zeros((len(classes), len(classes)), dtype=int)
     np.add.at(confusion, (labels, guess), 1)
     shown = confusion.sum(1)
     recall = np.divide(confusion.diagonal(), shown, where=shown > 0, out=np.zeros(len(shown)))
@@ -63,10 +70,19 @@ def scores(probabilities: Float32, labels: np.ndarray) -> dict[str, Any]:
         "windows": len(labels),
         "accuracy": round(float((guess == labels).mean()), 4),
         "balanced_accuracy": round(float(recall[shown > 0].mean()), 4),
-        "recall": {name: round(float(r), 4) for name, r in zip(GESTURES, recall, strict=True)},
+        "recall": {name: round(float(r), 4) for name, r in zip(classes, recall, strict=True)},
+        "rejecting": rejecting(probabilities, labels),
         "ece": round(calibration_error(probabilities, labels), 4),
         "confusion": confusion.tolist(),
     }
+
+
+def rejecting(probabilities: Float32, labels: np.ndarray) -> dict[str, float]:
+    """Share of windows that the reject option accepts, and the accuracy on those."""
+    sure = probabilities.max(1) > REJECT
+    right = probabilities.argmax(1) == labels
+    accuracy = float(right[sure].mean()) if sure.any() else 0.0
+    return {"accepted": round(float(sure.mean()), 4), "accuracy": round(accuracy, 4)}
 
 
 def calibration_error(probabilities: Float32, labels: np.ndarray, bins: int = 15) -> float:
@@ -117,30 +133,37 @@ def decisions(
 
 
 def evaluate_decisions(
-    classify: Classify, predict: Predict, recordings: Iterable[Recording]
+    classify: Classify,
+    predict: Predict,
+    recordings: Iterable[Recording],
+    classes: tuple[str, ...] = GESTURES,
 ) -> dict[str, Any]:
-    """What is decided on takes of one gesture each: right, wrong, missed, and how late.
+    """What is decided while gestures are made: right, wrong, missed, and how late.
 
-    The delay runs from the onset to the end of the deciding window, in seconds.
+    The first decision between a gesture's onset and 0.4 s after its offset is its answer. The
+    delay runs from the onset to the end of the deciding window, in seconds.
     """
     delays: list[float] = []
     right = wrong = missed = 0
     for take in recordings:
-        if not take.stretches:
+        if not take.stretches or len(take.observed) < SEEN_FRAMES:
             continue
-        asked = take.stretches[0]
         seen, last = sliding_seen(take.observed)
-        found = decisions(probabilities_of(classify, predict, seen))
-        if not found:
-            missed += 1
-        elif found[0][1] == asked.gesture:
-            right += 1
-            delays.append((int(last[found[0][0]]) - asked.onset) / RATE_HZ)
-        else:
-            wrong += 1
-    total = right + wrong + missed
+        rows = probabilities_of(classify, predict, seen)
+        found = [(int(last[at]), name) for at, name in decisions(rows, classes=classes)]
+        for asked in take.stretches:
+            until = asked.offset + ANSWER_FRAMES
+            answers = [(at, name) for at, name in found if asked.onset <= at <= until]
+            if not answers:
+                missed += 1
+            elif answers[0][1] == asked.gesture:
+                right += 1
+                delays.append((answers[0][0] - asked.onset) / RATE_HZ)
+            else:
+                wrong += 1
+    total = max(1, right + wrong + missed)
     return {
-        "takes": total,
+        "takes": right + wrong + missed,
         "right": round(right / total, 4),
         "wrong": round(wrong / total, 4),
         "missed": round(missed / total, 4),
@@ -150,7 +173,10 @@ def evaluate_decisions(
 
 
 def false_reactions(
-    classify: Classify, predict: Predict, streams: Iterable[Float32]
+    classify: Classify,
+    predict: Predict,
+    streams: Iterable[Float32],
+    classes: tuple[str, ...] = GESTURES,
 ) -> dict[str, Any]:
     """Decisions on streams in which nothing is to be decided, (T, 9, 3) each."""
     frames, found = 0, []
@@ -158,14 +184,15 @@ def false_reactions(
         if len(positions) < SEEN_FRAMES:
             continue
         seen, _ = sliding_seen(positions)
-        found += [name for _, name in decisions(probabilities_of(classify, predict, seen))]
+        rows = probabilities_of(classify, predict, seen)
+        found += [name for _, name in decisions(rows, classes=classes)]
         frames += len(positions)
     minutes = frames / RATE_HZ / 60
     return {
         "minutes": round(minutes, 1),
         "false_reactions": len(found),
         "per_10_minutes": round(10 * len(found) / minutes, 2),
-        "gestures": {name: found.count(name) for name in GESTURES if name in found},
+        "gestures": {name: found.count(name) for name in classes if name in found},
     }
 
 

@@ -66,7 +66,7 @@ def utd_mhad_streams(data: Path) -> Iterator[tuple[str, Float32]]:
         action = re.match(r"a\d+", path.name)
         label = UTD_MHAD.get(action[0]) if action else None
         if label is not None:
-            yield label, core_stream(read_utd_mhad(path)).positions
+            yield label, core_stream(read_utd_mhad(path).frames).positions
 
 
 def sim2real_report(classify: Classify, predict: Predict, data: Path) -> dict[str, Any]:

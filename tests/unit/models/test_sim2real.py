@@ -26,10 +26,10 @@ def recording(frames: int) -> SourceRecording:
 
 
 def test_a_recording_becomes_a_stream_at_25_hz() -> None:
-    stream = core_stream(recording(61))
+    stream = core_stream(recording(61).frames)
     assert stream.positions.shape == (50, 9, 3)
     assert set(np.diff(stream.stamps_ns)) == {40_000_000}
-    assert core_stream(recording(0)).positions.shape == (0, 9, 3)
+    assert core_stream(recording(0).frames).positions.shape == (0, 9, 3)
 
 
 def test_a_missing_set_is_named(tmp_path: Path) -> None:
