@@ -5,6 +5,7 @@ import json
 import socket
 import subprocess
 import sys
+from contextlib import closing
 from importlib.util import find_spec
 from ipaddress import ip_address
 from pathlib import Path
@@ -13,6 +14,7 @@ from typing import Annotated
 import msgspec
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from agent_server.cli.options import HostOption, JsonOption, PortOption, run, settings_with
 from agent_server.cli.prompts import Prompter
@@ -74,16 +76,18 @@ def record(
         raise ConfigError(f"--session is {session!r}: {SESSION_ID_RULE}")
     plan = TakePlan(name, subject, repetitions, to_ns(seconds), to_ns(rest))
     settings = _patient(settings_with(None, host=host, port=port))
+    models = load_models(settings)
+    rules = load_room(settings, models)
     console = Console(stderr=as_json, highlight=False)
     prompter = Prompter(console, plan, session)
-    takes = TakeRecorder(out, plan, session, SystemClock(), prompter.tell)
-    models = load_models(settings)
-    hub = Hub(settings, load_room(settings, models), models, SystemClock(), takes.open)
-    try:
-        run(_record(hub, bind(settings), takes, session, wait, console))
-    finally:
-        takes.close()
-        _report(takes, console, as_json=as_json)
+    with closing(bind(settings)) as listener:
+        takes = TakeRecorder(out, plan, session, SystemClock(), prompter.tell)
+        hub = Hub(settings, rules, models, SystemClock(), takes.open)
+        try:
+            run(_record(hub, listener, takes, session, wait, console))
+        finally:
+            takes.close()
+            _report(takes, console, as_json=as_json)
 
 
 def _patient(settings: Settings) -> Settings:
@@ -102,7 +106,7 @@ async def _record(
     base = address(listener)
     async with serving(hub, listener) as stopped:
         where = base.replace("http", "ws", 1) + f"/v1/sessions/{session}/sensor"
-        console.print(f"Connect a sensor to  [bold]{where}[/]   (docs/protocol.md says how)")
+        console.print(f"Connect a sensor to  [bold]{where}[/]   (docs/protocol.md)")
         if ip_address(listener.getsockname()[0]).is_loopback:
             console.print("It runs on this machine; for another one's add --host 0.0.0.0.")
         console.print(f"What it sees:        {base}/?session={session}   (Ctrl+C ends early)\n")
@@ -151,7 +155,7 @@ def _report(takes: TakeRecorder, console: Console, *, as_json: bool) -> None:
         print(json.dumps(report))
     elif is_kept:
         console.print(
-            f"\n[bold]{takes.path}[/]: {len(labels)} labels in {takes.frames} frames, "
+            f"\n[bold]{escape(str(takes.path))}[/]: {len(labels)} labels in {takes.frames} frames, "
             f"{takes.director.repeated} repeated",
             soft_wrap=True,
         )

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 
 from agent_server import __version__
 from agent_server.cli.bench import bench
@@ -55,5 +56,6 @@ def main() -> None:
     try:
         app()
     except AgentServerError as error:
-        Console(stderr=True).print(f"[bold red]error:[/] {error}", highlight=False, soft_wrap=True)
+        words = f"[bold red]error:[/] {escape(str(error))}"
+        Console(stderr=True).print(words, highlight=False, soft_wrap=True)
         raise SystemExit(1) from None

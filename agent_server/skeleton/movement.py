@@ -22,7 +22,7 @@ AWAY_M = 0.2
 """A joint that is farther from where it rested is away, also while it is held still."""
 FAST_M_S = 0.5
 """A joint that is faster moves. What sensors make of resting arms is slower, or short."""
-STIRRING_M_S = 0.15
+STIRRING_M_S = 0.2
 """A joint that is faster before and after it is away or fast is on its way."""
 SURE = 0.6
 """Joints below this confidence are guesses, which jump: they start no movement."""

@@ -97,6 +97,8 @@ async def test_replay_sends_to_a_running_server():
         (["serve", "--host", "203.0.113.1", "--port", "1"], "cannot listen"),
         (["convert", "--from", "msrc12", "nowhere.csv", "out.mcap"], "nowhere.csv"),
         (["recover", "nowhere.mcap", "out.mcap"], "nowhere.mcap"),
+        (["serve", "--classifier", "nowhere"], "no manifest.json in nowhere"),
+        (["replay", STREAMS / "cold.mcap", "--predictor", "nowhere"], "no manifest.json"),
     ],
 )
 def test_a_mistake_is_told_in_a_sentence(monkeypatch, capsys, arguments, said):

@@ -51,6 +51,8 @@ def test_the_thesis_grid_has_no_overlap(tmp_path):
         ("[server]\nmax_sessions = 0\n", "max_sessions"),
         ("[server]\ncommand_queue = 0\n", "command_queue"),
         ("[server]\nsession_linger_s = -1.0\n", "session_linger_s"),
+        ("[models]\nclassifier = ''\n", "classifier"),
+        ("[models]\ngate = 'x'\n", "gate"),
         ("[window\n", "TOML"),
     ],
 )
