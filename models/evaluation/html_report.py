@@ -1,23 +1,19 @@
 """The page that shows how well motion is predicted: figures and tables in one file."""
 
-import base64
-import re
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
-from string import Template
 from typing import Any
 
 from models.evaluation.figures.comparison import Comparison
 from models.evaluation.figures.curves import coordinate_plot, error_plot, speed_plot
 from models.evaluation.figures.embedding import embedding_plot
 from models.evaluation.figures.strips import strip_plots
-from models.evaluation.figures.style import Plot, duration
+from models.evaluation.figures.style import duration
+from models.evaluation.page import cell, entry, plot_section, section, table, write_page
 from models.evaluation.prediction import Outcome
 from models.evaluation.protocols import Protocol
 
-PAGE = "index.html"
-TEMPLATE = Path(__file__).with_name("html_report.html")
 DATA = {
     "h36m": "Human3.6M, those actions of subject 5 of which both takes are there. "
     "Weights trained on Human3.6M are for research only",
@@ -60,20 +56,15 @@ def write_report(
         *strip_plots(comparison),
         embedding_plot(comparison),
     ]
-    page = Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
-        title=f"Motion prediction, {escape(protocol.name)}",
-        heading=_marked(_heading(comparison)),
-        lead=_marked(_lead(comparison)),
-        key=_key(comparison),
-        errors=_error_table(comparison),
-        motion=_motion_table(comparison),
-        actions="".join(_action_table(comparison, action) for action in comparison.actions),
-        plots="".join(map(_section, plots)),
+    return write_page(
+        folder,
+        title=f"Motion prediction, {protocol.name}",
+        kind="Motion prediction",
+        heading=_heading(comparison),
+        lead=_lead(comparison),
+        key="".join(f"<li>{_name(comparison, model)}</li>" for model in comparison.models),
+        body=_numbers(comparison) + "".join(map(plot_section, plots)),
     )
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / PAGE
-    path.write_text(page, encoding="utf-8")
-    return path
 
 
 def _heading(comparison: Comparison) -> str:
@@ -97,13 +88,21 @@ def _lead(comparison: Comparison) -> str:
     )
 
 
-def _key(comparison: Comparison) -> str:
-    return "".join(f"<li>{_name(comparison, model)}</li>" for model in comparison.models)
-
-
 def _name(comparison: Comparison, model: str) -> str:
-    colour = comparison.colours[model]
-    return f'<i class="dot" style="background:{colour}"></i><code>{escape(model)}</code>'
+    return entry(f"<code>{escape(model)}</code>", comparison.colours[model])
+
+
+def _numbers(comparison: Comparison) -> str:
+    actions = "".join(_action_table(comparison, action) for action in comparison.actions)
+    return section(
+        "Numbers",
+        "Average over the actions",
+        _error_table(comparison) + _motion_table(comparison),
+        "Bold is best in its column, to the precision shown: the lowest error, or the first step "
+        "closest to the truth. Speed off the truth is the mean over time of the difference of "
+        "mean speeds (MPJS).",
+        f"<details><summary>Each action on its own</summary>{actions}</details>",
+    )
 
 
 def _error_table(comparison: Comparison) -> str:
@@ -113,8 +112,8 @@ def _error_table(comparison: Comparison) -> str:
 
 def _action_table(comparison: Comparison, action: str) -> str:
     rows = {model: comparison.summaries[model]["actions"][action] for model in comparison.models}
-    table = _table(comparison, _horizon_columns(comparison), rows, "error, mm")
-    return f"<h3>{escape(action)}</h3>{table}"
+    errors = _table(comparison, _horizon_columns(comparison), rows, "error, mm")
+    return f"<h3>{escape(action)}</h3>{errors}"
 
 
 def _horizon_columns(comparison: Comparison) -> list[Column]:
@@ -139,56 +138,28 @@ def _motion_table(comparison: Comparison) -> str:
         ("parameters", "parameters", None, ",d"),
         ("ms_per_window", "ms a window", None, ".2f"),
     ]
-    head = "".join(f'<th scope="col">{escape(title)}</th>' for _, title, _, _ in columns)
     body = ""
     for model, row in rows.items():
         cells = ""
         for key, _, judge, form in columns:
             best = judge is not None and row[judge] == min(other[judge] for other in rows.values())
-            cells += _cell(key, format(row[key], form), best)
+            cells += cell(key, format(row[key], form), best)
         body += f'<tr data-model="{escape(model)}">{_row_head(comparison, model)}{cells}</tr>'
-    return _framed("", head, body)
+    return table("", [title for _, title, _, _ in columns], body)
 
 
 def _table(comparison: Comparison, columns: list[Column], rows: dict[str, Row], corner: str) -> str:
     """A table with a row a model; the lowest figure of a column is bold."""
     lowest = {key: min(round(figure(r), 1) for r in rows.values()) for key, _, figure in columns}
-    head = "".join(f'<th scope="col">{title}</th>' for _, title, _ in columns)
     body = ""
     for model, row in rows.items():
         cells = "".join(
-            _cell(key, f"{figure(row):.1f}", round(figure(row), 1) == lowest[key])
+            cell(key, f"{figure(row):.1f}", round(figure(row), 1) == lowest[key])
             for key, _, figure in columns
         )
         body += f'<tr data-model="{escape(model)}">{_row_head(comparison, model)}{cells}</tr>'
-    return _framed(corner, head, body)
+    return table(corner, [title for _, title, _ in columns], body)
 
 
 def _row_head(comparison: Comparison, model: str) -> str:
     return f'<th scope="row">{_name(comparison, model)}</th>'
-
-
-def _cell(key: str, text: str, best: bool) -> str:
-    return f'<td data-key="{key}">{f"<b>{text}</b>" if best else text}</td>'
-
-
-def _framed(corner: str, head: str, body: str) -> str:
-    return (
-        f'<div class="wide"><table><thead><tr><th scope="col">{corner}</th>{head}</tr></thead>'
-        f"<tbody>{body}</tbody></table></div>"
-    )
-
-
-def _section(plot: Plot) -> str:
-    picture = base64.b64encode(plot.png).decode("ascii")
-    said = escape(plot.title.replace("`", ""))
-    return (
-        f'<section><p class="kind">{plot.kind}</p><h2>{_marked(plot.title)}</h2>'
-        f'<figure><img alt="{said}" src="data:image/png;base64,{picture}"></figure>'
-        f'<p class="note">{_marked(plot.note)}</p></section>'
-    )
-
-
-def _marked(text: str) -> str:
-    """Escaped text, with what stands in backticks set as code."""
-    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
