@@ -23,6 +23,9 @@ JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on one
 ReportOption = Annotated[
     Path | None, typer.Option("--report", help="Folder to write an HTML page to.")
 ]
+ClassifierBundleOption = Annotated[
+    Path, typer.Option("--bundle", help="Folder of a classifier's bundle.")
+]
 PredictorBundleOption = Annotated[
     Path, typer.Option("--predictor", help="Bundle whose predictor completes the windows.")
 ]

@@ -62,14 +62,14 @@ class Fold:
     test: tuple[str, ...]
 
 
-def read_streams(data: Path) -> list[TaggedStream]:
-    """All recordings, in the order of their names.
+def read_streams(folder: Path) -> list[TaggedStream]:
+    """All recordings of the set's folder, in the order of their names.
 
     Raises:
-        InvalidInput: If the set is not there.
+        InvalidInput: If there is none.
     """
     streams = []
-    for path in source_files(data / "msrc12", "*.csv*"):
+    for path in source_files(folder, "*.csv*"):
         recording = read_msrc12(path)
         stream = core_stream(recording.frames)
         streams.append(TaggedStream(path.name, recording.subject, stream, recording.marks))

@@ -1,5 +1,6 @@
 """Which people and which files train, validate and test."""
 
+from collections.abc import Collection
 from pathlib import Path
 from typing import Literal
 
@@ -41,15 +42,20 @@ def cmu_split(data: Path, split: Split) -> list[Recording]:
     return [r for i, r in enumerate(recordings) if held_out(i) == held]
 
 
-def synthetic_split(cache: Path, split: Split, sequences: int = 0) -> list[Recording]:
+def synthetic_split(
+    cache: Path, split: Split, sequences: int = 0, without: Collection[str] = ()
+) -> list[Recording]:
     """Synthetic recordings of a split.
 
     Args:
         cache: Folder where generated recordings are kept.
         split: Which people.
         sequences: How many to train on; the other splits have a fixed number.
+        without: Idle actions that are left out.
     """
     if split == "train":
-        return cached_recordings(cache, SYNTHETIC_SEED, sequences, subject_names(TRAIN_PEOPLE))
+        people = subject_names(TRAIN_PEOPLE)
+        return cached_recordings(cache, SYNTHETIC_SEED, sequences, people, without)
     first, count, takes = HELD_OUT[split]
-    return cached_recordings(cache, SYNTHETIC_SEED + first, takes, subject_names(count, first))
+    people = subject_names(count, first)
+    return cached_recordings(cache, SYNTHETIC_SEED + first, takes, people, without)

@@ -1,7 +1,7 @@
 """Recordings of virtual people, as a sensor sees them and as they would be without its noise."""
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,14 +23,31 @@ TAIL_S = (PREDICTED_FRAMES / RATE_HZ + 0.2, PREDICTED_FRAMES / RATE_HZ + 1.2)
 """Rest after the action, so that windows reach past its end."""
 
 
-def synthetic_recordings(seed: int, count: int, subjects: Sequence[str]) -> list[Recording]:
-    """Draw ``count`` takes of one action each; take i depends on the seed and i alone."""
+def synthetic_recordings(
+    seed: int,
+    count: int,
+    subjects: Sequence[str],
+    without: Collection[str] = (),
+    shares: Sequence[float] = SENSOR_SHARES,
+) -> list[Recording]:
+    """Draw ``count`` takes of one action each; take i depends on the seed and i alone.
+
+    Args:
+        seed: Where everything comes from.
+        count: How many takes.
+        subjects: Names of the people.
+        without: Idle actions that are left out, because they mean something.
+        shares: How often each of ``SENSORS`` looks on.
+    """
     group = people(seed, subjects)
-    return [_take(np.random.default_rng([seed, 11, i]), group, subjects) for i in range(count)]
+    return [
+        _take(np.random.default_rng([seed, 11, i]), group, subjects, without, shares)
+        for i in range(count)
+    ]
 
 
 def cached_recordings(
-    cache: Path, seed: int, count: int, subjects: Sequence[str]
+    cache: Path, seed: int, count: int, subjects: Sequence[str], without: Collection[str] = ()
 ) -> list[Recording]:
     """The same, kept in a file until the generator gives other takes.
 
@@ -39,21 +56,30 @@ def cached_recordings(
         seed: Where everything comes from.
         count: How many takes.
         subjects: Names of the people.
+        without: Idle actions that are left out.
     """
-    words = repr((2, seed, count, tuple(subjects), _probe(seed, subjects)))
+    words = repr((3, seed, count, tuple(subjects), sorted(without), _probe(seed, subjects)))
     path = cache / f"synthetic-{hashlib.sha256(words.encode()).hexdigest()[:16]}.npz"
     if not path.exists():
         cache.mkdir(parents=True, exist_ok=True)
-        _write(path, synthetic_recordings(seed, count, subjects))
+        _write(path, synthetic_recordings(seed, count, subjects, without))
     return _read(path)
 
 
-def _take(rng: np.random.Generator, group: dict[str, Person], subjects: Sequence[str]) -> Recording:
+def _take(
+    rng: np.random.Generator,
+    group: dict[str, Person],
+    subjects: Sequence[str],
+    without: Collection[str],
+    shares: Sequence[float],
+) -> Recording:
     person = group[str(rng.choice(list(subjects)))]
     idle = rng.random() < IDLE_SHARE
     gesture = IDLE if idle else str(rng.choice([*DISCOMFORTS, HELLO]))
-    sensor = SENSORS[int(rng.choice(len(SENSORS), p=SENSOR_SHARES))]
+    sensor = SENSORS[int(rng.choice(len(SENSORS), p=shares))]
     clip = sample_clip(rng, gesture, person)
+    while clip.variant in without:
+        clip = sample_clip(rng, gesture, person)
     clip = replace(clip, duration_s=clip.offset_s + float(rng.uniform(*TAIL_S)))
     # The same draws with and without what cannot be foreseen: both takes have the same ticks
     # and the same constant errors, and differ by jitter and failures alone.

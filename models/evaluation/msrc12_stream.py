@@ -157,7 +157,7 @@ def msrc12_stream_report(data: Path, folder: Path, seed: int = 0) -> dict[str, A
         seed: Of every training.
     """
     torch.set_num_threads(1)
-    streams = read_streams(data)
+    streams = read_streams(data / "msrc12")
     held: dict[str, list[Watched]] = {name: [] for name in CONFIGS}
     tested: dict[str, list[Watched]] = {name: [] for name in CONFIGS}
     for number, fold in enumerate(folds([one.subject for one in streams])):

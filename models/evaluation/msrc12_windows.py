@@ -60,7 +60,7 @@ def msrc12_report(data: Path, folder: Path, seed: int = 0) -> dict[str, Any]:
         seed: Of every training.
     """
     torch.set_num_threads(1)
-    streams = read_streams(data)
+    streams = read_streams(data / "msrc12")
     rotations = []
     for number, fold in enumerate(folds([one.subject for one in streams])):
         place = folder / f"rotation_{number}"

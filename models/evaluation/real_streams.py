@@ -29,7 +29,7 @@ from models.evaluation.sim2real import MSRC12
 TOLERANCE_S = 1.5
 
 
-def msrc12_stream_report(classify: Classify, predict: Predict, data: Path) -> dict[str, Any]:
+def shipped_report(classify: Classify, predict: Predict, data: Path) -> dict[str, Any]:
     """Recall and delay of real gestures, and reactions to real motion that asks for none.
 
     Args:

@@ -48,7 +48,7 @@ def msrc12_windows(data: Path) -> tuple[Float32, list[str]]:
     Raises:
         InvalidInput: If the set is not there.
     """
-    streams = read_streams(data)
+    streams = read_streams(data / "msrc12")
     windows = tag_windows(streams, {stream.subject for stream in streams})
     tags = [TAGS[label] for label in windows.labels.tolist()]
     index = np.flatnonzero([tag in MSRC12 for tag in tags])

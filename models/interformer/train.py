@@ -151,11 +151,14 @@ def balanced_accuracy(logits: torch.Tensor, labels: torch.Tensor) -> float:
 class Trainer:
     """One network and what updates it."""
 
-    def __init__(self, config: TrainConfig, device: torch.device) -> None:
+    def __init__(
+        self, config: TrainConfig, device: torch.device, network: Classifier | None = None
+    ) -> None:
         self.config = config
-        self.network = Classifier(config.network).to(device)
+        self.network = (network or Classifier(config.network)).to(device)
+        trained = [weight for weight in self.network.parameters() if weight.requires_grad]
         optimizer = torch.optim.AdamW(
-            self.network.parameters(), config.learning_rate, weight_decay=config.weight_decay
+            trained, config.learning_rate, weight_decay=config.weight_decay
         )
         self.updater = Updater(
             self.network,
@@ -184,13 +187,14 @@ class ClassifierLearner:
         training: WindowSet,
         validation: WindowSet,
         predictor: nn.Module,
+        network: Classifier | None = None,
     ) -> None:
         self.config, self.training = config, training
         self.device = training_device()
         self.predictor = predictor.to(self.device).eval().requires_grad_(False)
         self.pools = Pools.of(training)
         self.validation = validation.take((validation.labels != AMBIGUOUS).nonzero()[:, 0])
-        self.trainer = Trainer(config, self.device)
+        self.trainer = Trainer(config, self.device, network)
 
     def step(self, generator: torch.Generator) -> dict[str, float]:
         """One update on windows of which some are undecided."""
@@ -229,6 +233,7 @@ def train(
     training: WindowSet,
     validation: WindowSet,
     predictor: nn.Module,
+    network: Classifier | None = None,
 ) -> None:
     """Train a classifier; the checkpoint with the lowest balanced validation loss is the best.
 
@@ -238,9 +243,11 @@ def train(
         training: Windows with labels; ambiguous ones are left out.
         validation: Windows of other people.
         predictor: Frozen.
+        network: What to start from; weights that need no gradient stay as they are. None starts
+            afresh.
     """
     torch.manual_seed(run.info["seed"])
-    learner = ClassifierLearner(config, training, validation, predictor)
+    learner = ClassifierLearner(config, training, validation, predictor, network)
     fit("interformer", learner, run, config.steps, config.validate_every)
 
 

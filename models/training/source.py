@@ -93,10 +93,10 @@ class TaggedSource:
 
     def draw(self, count: int, generator: torch.Generator) -> Windows:
         """An augmented batch."""
-        everywhere, _ = _some(self.windows, count - count // 2, generator)
-        tagged, _ = _some(self.tagged, count // 2, generator)
-        both = torch.cat([everywhere, tagged])
-        return split(*augment(both, both, VARIED, generator))
+        everywhere = _some(self.windows, count - count // 2, generator)
+        tagged = _some(self.tagged, count // 2, generator)
+        observed, clean = (torch.cat(both) for both in zip(everywhere, tagged, strict=True))
+        return split(*augment(observed, clean, VARIED, generator))
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,79 @@
+"""Table 5.2 of Chopin's thesis on virtual people: what the prediction is worth to the classifier.
+
+Eleven virtual people make the six gestures or something else, before motion capture or a Kinect.
+Two of them are held out. A predictor is trained on eight others and then frozen; the rows are one
+network on one budget, trained on the same people, with another choice of checkpoint on the ninth.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from agent_server.domain.gesture import IDLE
+from agent_server.synthetic.corpus import subject_names
+from models.data.synthetic import synthetic_recordings
+from models.data.windows import AMBIGUOUS, WindowSet, cut
+from models.evaluation.gestures import scores
+from models.evaluation.rows import Split, paired_p_value, train_rows
+from models.interformer.config import TrainConfig
+from models.ma_wgan.config import SERVER
+from models.ma_wgan.train import load_predictor, train_on
+from models.training.run import INFO, Run
+from models.training.source import TaggedSource, whole
+
+PEOPLE = subject_names(11, 500)
+TRAIN, VALIDATION, TEST = PEOPLE[:8], PEOPLE[8:9], PEOPLE[9:]
+SHARES = (0.25, 0.25, 0.5, 0.0)
+"""Kinect v2, Kinect v1, motion capture; no webcam."""
+TAKES = {"train": (520, 2_000), "validation": (521, 300), "test": (522, 600)}
+"""Seed and number of takes."""
+STRIDE = 5
+VALIDATION_STRIDE = 25
+PREDICTOR = replace(SERVER, steps=2_000, validate_every=250)
+CLASSIFIER = TrainConfig(steps=2_000, validate_every=250)
+COMMAND = "python -m models evaluate gestures --benchmark thesis --data DIR"
+
+
+def thesis_report(folder: Path, seed: int = 0) -> dict[str, Any]:
+    """Train and test all rows.
+
+    Args:
+        folder: Where the runs are kept; those that are there are only measured again.
+        seed: Of every training.
+    """
+    torch.set_num_threads(1)
+    training = _windows(TRAIN, "train", 1)
+    validation = _windows(VALIDATION, "validation", STRIDE)
+    test = _judged(_windows(TEST, "test", STRIDE))
+    place = folder / "ma_wgan"
+    if not (place / INFO).exists():
+        held = whole(_windows(VALIDATION, "validation", VALIDATION_STRIDE))
+        gestures = training.labels < training.classes.index(IDLE)
+        source = TaggedSource(
+            training, training.take(gestures.nonzero()[:, 0]), {"synthetic": held}
+        )
+        train_on(PREDICTOR, Run(place, PREDICTOR, seed, COMMAND, False), source)
+    predictors = {"ma_wgan": load_predictor(place)}
+    split = Split(training, _judged(validation), test)
+    results = train_rows(CLASSIFIER, predictors, split, folder, seed)
+    return {
+        "synthetic": True,
+        "rows": {
+            name: scores(result.probabilities, result.labels) for name, result in results.items()
+        },
+        "p_value": paired_p_value(results["1s+ma_wgan"].right, results["1s"].right),
+        "thesis": {"3s": 0.636, "1s": 0.477, "1s+ma_wgan": 0.602},
+    }
+
+
+def _windows(people: tuple[str, ...], split: str, stride: int) -> WindowSet:
+    seed, count = TAKES[split]
+    return cut(synthetic_recordings(seed, count, people, shares=SHARES), stride)
+
+
+def _judged(windows: WindowSet) -> WindowSet:
+    """Those that have a label, and show nothing in their future that the label does not say."""
+    clear = (windows.labels != AMBIGUOUS) & ~windows.undecided
+    return windows.take(clear.nonzero()[:, 0])
