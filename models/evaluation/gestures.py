@@ -12,7 +12,7 @@ from agent_server.domain.gesture import GESTURES, HELLO, IDLE, Classification
 from agent_server.domain.motion import FRAME_NS, RATE_HZ, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.stages.decide import GestureTracker, Phase
-from models.data.windows import AMBIGUOUS, Recording, WindowSet
+from models.data.windows import AMBIGUOUS, Recording, Stretch, WindowSet
 
 HOP_FRAMES = WindowSettings().hop
 DECIDE = DecideSettings()
@@ -132,6 +132,17 @@ def decisions(
     return found
 
 
+def answer_to(asked: Stretch, found: Iterable[tuple[int, str]]) -> tuple[int, str] | None:
+    """The first decision between a gesture's onset and 0.4 s after its offset.
+
+    Args:
+        asked: The gesture.
+        found: Last frame of the deciding window and what is decided, in the order of time.
+    """
+    until = asked.offset + ANSWER_FRAMES
+    return next(((at, name) for at, name in found if asked.onset <= at <= until), None)
+
+
 def evaluate_decisions(
     classify: Classify,
     predict: Predict,
@@ -140,8 +151,7 @@ def evaluate_decisions(
 ) -> dict[str, Any]:
     """What is decided while gestures are made: right, wrong, missed, and how late.
 
-    The first decision between a gesture's onset and 0.4 s after its offset is its answer. The
-    delay runs from the onset to the end of the deciding window, in seconds.
+    The delay runs from the onset to the end of the deciding window, in seconds.
     """
     delays: list[float] = []
     right = wrong = missed = 0
@@ -152,13 +162,12 @@ def evaluate_decisions(
         rows = probabilities_of(classify, predict, seen)
         found = [(int(last[at]), name) for at, name in decisions(rows, classes=classes)]
         for asked in take.stretches:
-            until = asked.offset + ANSWER_FRAMES
-            answers = [(at, name) for at, name in found if asked.onset <= at <= until]
-            if not answers:
+            answer = answer_to(asked, found)
+            if answer is None:
                 missed += 1
-            elif answers[0][1] == asked.gesture:
+            elif answer[1] == asked.gesture:
                 right += 1
-                delays.append((answers[0][0] - asked.onset) / RATE_HZ)
+                delays.append((answer[0] - asked.onset) / RATE_HZ)
             else:
                 wrong += 1
     total = max(1, right + wrong + missed)
