@@ -106,6 +106,23 @@ async def test_an_interruption_keeps_what_was_finished(tmp_path):
     assert len(open_recording(tmp_path / report["file"]).labels()) == 1
 
 
+async def test_a_sensor_that_goes_in_mid_repetition_may_come_back(tmp_path):
+    shown = play(SHOWN)
+    until = [event for event in shown.events if event.originating_ns < 6 * NS]
+    async with recording(tmp_path, "--repetitions", "1") as (process, url):
+        await send(url, until)
+        async with asyncio.timeout(10):
+            while "did not count" not in (await process.stderr.readline()).decode():
+                pass
+        await send(url, shown.events)
+        status, out, said = await ended(process)
+    assert status == 0, said
+    report = json.loads(out)
+    assert (report["repetitions"], report["repeated"]) == (1, 1)
+    # The second connection's clock goes on where the first one's has stopped.
+    assert report["labels"][0]["onset_ns"] > until[-1].originating_ns + 4 * NS
+
+
 async def test_a_sensor_that_does_not_come_is_waited_for_but_not_for_ever(tmp_path):
     async with recording(tmp_path, "--wait", "1") as (process, _):
         status, out, said = await ended(process)

@@ -9,6 +9,7 @@ import pytest
 from agent_server import assets
 from agent_server.cli.options import settings_with
 from agent_server.config import GateSettings, ModelSettings, Settings, load_settings
+from agent_server.domain.decision import Outcome
 from agent_server.domain.gesture import GESTURES
 from agent_server.errors import BundleError, ConfigError, RuleError
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
@@ -98,19 +99,41 @@ def test_a_rule_file_may_name_a_taught_gesture_and_must_not_name_others(tmp_path
         load_room(settings, knowing(*GESTURES))
 
 
-def test_a_taught_gesture_leads_to_the_reaction_of_its_rule(tmp_path):
-    settings = msgspec.structs.replace(
-        room_file(tmp_path, ROOM + DIM), gate=GateSettings(mode="off")
-    )
+def test_the_rule_of_the_guide_is_taken(tmp_path):
+    guide = (Path(__file__).parents[3] / "docs" / "teaching.md").read_text("utf-8")
+    rule = guide.partition("<!-- example: rule -->\n```toml\n")[2].partition("```")[0]
+    room = ROOM.replace('ungated = ["hello"]', 'ungated = ["hello", "thumbs_up"]')
+    rules = load_room(room_file(tmp_path, room + "\n" + rule), knowing(*GESTURES, "thumbs_up"))
+    assert rules.rules["thumbs_up"][0].reaction.name == "greet"
+    assert not rules.is_gated("thumbs_up")
+
+
+def decisions_on_raised_hands(settings):
+    """What comes of two seconds of raised hands, which the classifier has learnt as ``dim``."""
     classifier = RuleClassifier(
         lambda motion: "dim" if covers_ears(motion) == "loud" else "idle", (*GESTURES, "dim")
     )
     models = Models(LastFramePredictor(), classifier)
     core = Core("s", settings, load_room(settings, models), models.hashes)
-    decisions = list(replay_stream(core, models, stream(6, hands_up=lambda t: 2 <= t < 4)))
+    return list(replay_stream(core, models, stream(6, hands_up=lambda t: 2 <= t < 4)))
+
+
+OPEN_GATE = GateSettings(mode="off")
+
+
+def test_a_taught_gesture_leads_to_the_reaction_of_its_rule(tmp_path):
+    settings = msgspec.structs.replace(room_file(tmp_path, ROOM + DIM), gate=OPEN_GATE)
+    decisions = decisions_on_raised_hands(settings)
     commands = [decision.command for decision in decisions if decision.command is not None]
     assert [(command.cause, command.reaction) for command in commands] == [("dim", "close_curtain")]
     assert "dim" in decisions[0].probabilities
+
+
+def test_a_taught_gesture_without_a_rule_is_seen_and_nothing_follows():
+    decisions = decisions_on_raised_hands(Settings(gate=OPEN_GATE))
+    seen = {decision.outcome for decision in decisions if decision.gesture == "dim"}
+    assert Outcome.NOTHING_TO_DO in seen
+    assert Outcome.COMMAND not in seen
 
 
 def test_a_classifier_without_the_built_in_gestures_needs_a_room_of_its_own(tmp_path):
