@@ -61,14 +61,11 @@ def export_interformer(
     data: DataOption,
     run: RunOption,
     predictor: PredictorBundleOption = PREDICTOR,
-    seen_only: Annotated[
-        Path | None, typer.Option("--seen-only", help="Run of the classifier of 1 s alone.")
-    ] = None,
     out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = CLASSIFIER,
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
 ) -> None:
     """Calibrate, export, check and measure a classifier."""
     torch.set_num_threads(1)
-    manifest = export_classifier(run, predictor, seen_only, out, version, data, cache)
+    manifest = export_classifier(run, predictor, out, version, data, cache)
     show(manifest.results, as_json=False)

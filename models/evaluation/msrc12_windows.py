@@ -15,6 +15,7 @@ import torch
 from torch import nn
 
 from models.data.msrc12 import (
+    STREAM_CLASSES,
     TAGS,
     Fold,
     TaggedStream,
@@ -24,7 +25,14 @@ from models.data.msrc12 import (
     tagged_recordings,
 )
 from models.data.windows import Augmentation, cut
-from models.evaluation.rows import RowResult, Split, paired_p_value, recall_by_class, train_rows
+from models.evaluation.rows import (
+    RowResult,
+    Split,
+    paired_p_value,
+    recall_by_class,
+    row_configs,
+    train_rows,
+)
 from models.interformer.config import NetworkConfig, TrainConfig
 from models.ma_wgan.config import SERVER
 from models.ma_wgan.train import load_predictor
@@ -65,12 +73,13 @@ def msrc12_report(data: Path, folder: Path, seed: int = 0) -> dict[str, Any]:
     for number, fold in enumerate(folds([one.subject for one in streams])):
         place = folder / f"rotation_{number}"
         predictors = fold_predictors(streams, fold, place, seed)
+        rows = row_configs(CLASSIFIER, tuple(predictors))
         split = Split(
             tag_windows(streams, fold.train, SHIFT),
             tag_windows(streams, fold.validation),
             tag_windows(streams, fold.test),
         )
-        rotations.append(train_rows(CLASSIFIER, predictors, split, place, seed))
+        rotations.append(train_rows(rows, predictors, split, place, seed))
     return _summary(rotations)
 
 
@@ -100,7 +109,7 @@ def fold_predictors(
 ) -> dict[str, nn.Module]:
     """Both predictors, trained on the people of a rotation unless their runs are there."""
     source = TaggedSource(
-        cut(tagged_recordings(streams, fold.train)),
+        cut(tagged_recordings(streams, fold.train), classes=STREAM_CLASSES),
         tag_windows(streams, fold.train, SHIFT),
         {"msrc12": _held(streams, fold)},
     )
@@ -115,4 +124,5 @@ def fold_predictors(
 
 
 def _held(streams: Sequence[TaggedStream], fold: Fold) -> Windows:
-    return whole(cut(tagged_recordings(streams, fold.validation), VALIDATION_STRIDE))
+    held = tagged_recordings(streams, fold.validation)
+    return whole(cut(held, VALIDATION_STRIDE, STREAM_CLASSES))

@@ -76,7 +76,7 @@ def row_configs(base: TrainConfig, predictors: Sequence[str]) -> dict[str, Train
 
 
 def train_rows(
-    base: TrainConfig,
+    rows: Mapping[str, TrainConfig],
     predictors: Mapping[str, nn.Module],
     split: Split,
     folder: Path,
@@ -85,16 +85,16 @@ def train_rows(
     """Train each row, unless its run is there, and ask it about the test windows.
 
     Args:
-        base: What all rows share.
+        rows: Row -> configuration; a row that begins with ``1s+NAME`` uses that predictor.
         predictors: Frozen, by name.
         split: The windows.
         folder: Where the runs are kept, one folder a row.
         seed: Of every row.
     """
     results = {}
-    for name, config in row_configs(base, tuple(predictors)).items():
-        predictor = predictors.get(name.removeprefix("1s+"), Held())
-        place = folder / name.replace("+", "_")
+    for name, config in rows.items():
+        predictor = predictors.get(name.removeprefix("1s+").split()[0], Held())
+        place = folder / name.replace("+", "_").replace(" ", "_")
         if not (place / INFO).exists():
             run = Run(place, config, seed, f"evaluate gestures ({name})", resume=False)
             train(config, run, split.training, split.validation, predictor)

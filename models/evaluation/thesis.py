@@ -16,7 +16,7 @@ from agent_server.synthetic.corpus import subject_names
 from models.data.synthetic import synthetic_recordings
 from models.data.windows import AMBIGUOUS, WindowSet, cut
 from models.evaluation.gestures import scores
-from models.evaluation.rows import Split, paired_p_value, train_rows
+from models.evaluation.rows import RowResult, Split, paired_p_value, row_configs, train_rows
 from models.interformer.config import TrainConfig
 from models.ma_wgan.config import SERVER
 from models.ma_wgan.train import load_predictor, train_on
@@ -33,6 +33,12 @@ STRIDE = 5
 VALIDATION_STRIDE = 25
 PREDICTOR = replace(SERVER, steps=2_000, validate_every=250)
 CLASSIFIER = TrainConfig(steps=2_000, validate_every=250)
+ABLATIONS = {
+    f"1s+ma_wgan without {what}": replace(
+        CLASSIFIER, network=replace(CLASSIFIER.network, **{switch: False})
+    )
+    for what, switch in (("adjacency", "adjacency"), ("spatial attention", "spatial"))
+}
 COMMAND = "python -m models evaluate gestures --benchmark thesis --data DIR"
 
 
@@ -57,15 +63,19 @@ def thesis_report(folder: Path, seed: int = 0) -> dict[str, Any]:
         train_on(PREDICTOR, Run(place, PREDICTOR, seed, COMMAND, False), source)
     predictors = {"ma_wgan": load_predictor(place)}
     split = Split(training, _judged(validation), test)
-    results = train_rows(CLASSIFIER, predictors, split, folder, seed)
+    results = train_rows(row_configs(CLASSIFIER, ("ma_wgan",)), predictors, split, folder, seed)
+    ablations = train_rows(ABLATIONS, predictors, split, folder, seed)
     return {
         "synthetic": True,
-        "rows": {
-            name: scores(result.probabilities, result.labels) for name, result in results.items()
-        },
+        "rows": _figures(results),
+        "ablations": _figures(ablations),
         "p_value": paired_p_value(results["1s+ma_wgan"].right, results["1s"].right),
         "thesis": {"3s": 0.636, "1s": 0.477, "1s+ma_wgan": 0.602},
     }
+
+
+def _figures(results: dict[str, RowResult]) -> dict[str, Any]:
+    return {name: scores(each.probabilities, each.labels) for name, each in results.items()}
 
 
 def _windows(people: tuple[str, ...], split: str, stride: int) -> WindowSet:

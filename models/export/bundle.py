@@ -57,6 +57,7 @@ class Export:
         info: What the training run says about itself.
         sources: What it was trained on.
         skeleton: Name of the joints.
+        licence: Licence of the weights; None is that of the strictest set.
     """
 
     name: str
@@ -69,10 +70,13 @@ class Export:
     info: dict[str, Any]
     sources: tuple[DataSource, ...] = SERVER_SOURCES
     skeleton: SkeletonName = "core9"
+    licence: str | None = None
 
     @property
-    def licence(self) -> str:
-        """Licence of the weights: that of the strictest set."""
+    def weights_licence(self) -> str:
+        """Licence of the weights."""
+        if self.licence is not None:
+            return self.licence
         free = all(source.licence != h36m.LICENCE for source in self.sources)
         return LICENCE if free else RESEARCH_LICENCE
 
@@ -126,7 +130,7 @@ def write_bundle(
             parameters=sum(p.numel() for p in export.network.parameters()),
             batch_exact=is_batch_exact(model, export.windows),
             files={},
-            licence=export.licence,
+            licence=export.weights_licence,
             training=Training(
                 command=export.info["command"],
                 seed=export.info["seed"],

@@ -25,7 +25,6 @@ FAMILIES = {
 GESTURE_ROWS = {
     "1s+2s_predicted": "1 s seen, 2 s predicted (as it runs)",
     "1s+last_frame": "1 s seen, last frame repeated",
-    "1s_only": "another network of the same size, trained on 1 s alone",
     "3s_true": "3 s seen, nothing predicted",
 }
 
@@ -41,7 +40,7 @@ def predictor_card(manifest: Manifest) -> str:
     past = manifest.input_frames / manifest.rate_hz
     family = manifest.training.command.split()[4]
     lines = [
-        _head(manifest, f"Predicts {seconds:g} s of motion from the last {past:g} s."),
+        head(manifest, f"Predicts {seconds:g} s of motion from the last {past:g} s."),
         f"Input `seen` (B, {manifest.input_frames}, J, 3), output `future` "
         f"(B, {manifest.output_frames}, J, 3), float32, the joints of {manifest.skeleton}: "
         f"metres, origin at {origin}, {manifest.rate_hz} Hz.",
@@ -53,7 +52,7 @@ def predictor_card(manifest: Manifest) -> str:
     for row in _measured(manifest.results):
         words = f"On {SETS[row['protocol']]}, {row['windows']} windows, {row['metric']}:"
         lines += ["", words, "", *_horizon_table(row), "", _motion_line(row["average"])]
-    return "\n".join([*lines, "", *_tail(manifest)])
+    return "\n".join([*lines, "", *tail(manifest)])
 
 
 def _measured(results: Mapping[str, Any]) -> list[Mapping[str, Any]]:
@@ -68,7 +67,7 @@ def classifier_card(manifest: Manifest) -> str:
     """The card of a classifier."""
     results = manifest.results
     lines = [
-        _head(manifest, "Tells seven gestures apart from one second seen and two predicted."),
+        head(manifest, "Tells seven gestures apart from one second seen and two predicted."),
         "Input `motion` (B, 75, 9, 3) float32: 25 seen and 50 predicted frames at 25 Hz, metres, "
         "origin at the navel of the last seen frame, axes of the camera frame. Output "
         f"`probabilities` (B, 7): {', '.join(GESTURES)}.",
@@ -90,20 +89,20 @@ def classifier_card(manifest: Manifest) -> str:
         if key in results:
             row = results[key]
             lines.append(
-                f"| {words} | {_percent(row['accuracy'])} | "
-                f"{_percent(row['balanced_accuracy'])} | {row['ece']:.3f} |"
+                f"| {words} | {percent(row['accuracy'])} | "
+                f"{percent(row['balanced_accuracy'])} | {row['ece']:.3f} |"
             )
     recall = results["1s+2s_predicted"]["recall"]
     lines += [
         "",
         "Recall of each class with predicted frames: "
-        + ", ".join(f"{name} {_percent(value)}" for name, value in recall.items())
+        + ", ".join(f"{name} {percent(value)}" for name, value in recall.items())
         + ".",
         "",
         f"Decisions ({_DECIDE.enter_windows} windows in a row, 0.2 s apart, at {_DECIDE.enter:g} "
         f"or more, hello at {_DECIDE.enter_ungated:g}):",
         "",
-        *_decision_lines(results["decisions"]),
+        *decision_lines(results["decisions"]),
         "",
         "Reactions where there should be none:",
         "",
@@ -115,10 +114,11 @@ def classifier_card(manifest: Manifest) -> str:
             ("CMU test recordings", results["idle_cmu"]),
         )
     ]
-    return "\n".join([*lines, "", *_tail(manifest)])
+    return "\n".join([*lines, "", *tail(manifest)])
 
 
-def _head(manifest: Manifest, sentence: str) -> str:
+def head(manifest: Manifest, sentence: str) -> str:
+    """Title, a sentence, and what the weights are."""
     return (
         f"# {manifest.name} {manifest.version}\n\n{sentence}\n\n"
         f"{manifest.parameters:,} parameters, ONNX opset {manifest.opset}, weights under "
@@ -149,16 +149,18 @@ def _motion_line(row: Mapping[str, Any]) -> str:
     )
 
 
-def _decision_lines(row: Mapping[str, Any]) -> list[str]:
+def decision_lines(row: Mapping[str, Any]) -> list[str]:
+    """What the decision stage makes of labelled takes."""
     return [
-        f"- {row['takes']} takes of one gesture: {_percent(row['right'])} right, "
-        f"{_percent(row['wrong'])} wrong, {_percent(row['missed'])} missed",
+        f"- {row['takes']} takes of one gesture: {percent(row['right'])} right, "
+        f"{percent(row['wrong'])} wrong, {percent(row['missed'])} missed",
         f"- from onset to decision: median {row['delay_s_p50']} s, "
         f"nine in ten within {row['delay_s_p90']} s",
     ]
 
 
-def _tail(manifest: Manifest) -> list[str]:
+def tail(manifest: Manifest) -> list[str]:
+    """Time, exactness and origin."""
     training, results = manifest.training, manifest.results
     same = "the same bits as" if manifest.batch_exact else "other bits than"
     return [
@@ -196,5 +198,6 @@ def _origin(synthetic: bool) -> str:
     return "synthetic" if synthetic else "real recordings"
 
 
-def _percent(share: float) -> str:
+def percent(share: float) -> str:
+    """A share for readers."""
     return f"{100 * share:.1f} %"

@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import torch
 
 from agent_server.domain.gesture import GESTURES
@@ -11,7 +10,6 @@ from agent_server.domain.motion import SEEN_FRAMES
 from agent_server.inference.manifest import MODEL_FILE, Manifest, read_manifest
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import AMBIGUOUS, cut, join
-from models.evaluation.gestures import as_torch, hold_last, labelled_windows, scores
 from models.evaluation.report import STRIDE, classifier_report
 from models.evaluation.session import OnnxModel
 from models.export.bundle import Export, write_bundle
@@ -27,7 +25,6 @@ CHECKED_WINDOWS = 128
 def export_classifier(
     run: Path,
     predictor: Path,
-    seen_only: Path | None,
     folder: Path,
     version: str,
     data: Path,
@@ -38,8 +35,6 @@ def export_classifier(
     Args:
         run: Training run.
         predictor: Bundle whose predictor completes the windows.
-        seen_only: Run of a classifier trained on windows whose last frame is repeated, for the
-            card; None leaves its row out.
         folder: Where the bundle goes.
         version: Version of the model.
         data: Folder that holds ``cmu_mocap/``.
@@ -55,8 +50,6 @@ def export_classifier(
 
     def measure(path: Path) -> dict[str, Any]:
         results = classifier_report(OnnxModel(path), predict, data, cache)
-        if seen_only is not None:
-            results["1s_only"] = seen_only_scores(seen_only, cache)
         return {**results, "temperature": float(network.temperature)}
 
     export = Export(
@@ -86,11 +79,3 @@ def calibrated(classifier: Classifier, predict: OnnxModel, data: Path, cache: Pa
     with torch.no_grad():
         logits = torch.cat([classifier(part) for part in torch.split(motion, 256)])
     return Calibrated(classifier, fit_temperature(logits, windows.labels[index])).eval()
-
-
-def seen_only_scores(run: Path, cache: Path) -> dict[str, Any]:
-    """Scores of the classifier of 1 s alone on the same windows."""
-    seen, _, labels = labelled_windows(cut(synthetic_split(cache, "test"), STRIDE))
-    motion = np.concatenate([seen, hold_last(seen)], axis=1)
-    logits = torch.from_numpy(as_torch(load_classifier(run))(motion))
-    return scores(torch.softmax(logits, dim=-1).numpy(), labels)

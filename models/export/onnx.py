@@ -1,5 +1,9 @@
 """Torch -> ONNX, and the checks that the file computes the same."""
 
+import logging
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -29,20 +33,34 @@ def write_onnx(
         output_name: Name of the output.
     """
     batch = torch.export.Dim("batch", min=1, max=4096)
-    program = torch.onnx.export(
-        network,
-        (example,),
-        dynamo=True,
-        opset_version=OPSET,
-        input_names=[input_name],
-        output_names=[output_name],
-        dynamic_shapes=({0: batch},),
-        verbose=False,
-    )
+    with _quiet():
+        program = torch.onnx.export(
+            network,
+            (example,),
+            dynamo=True,
+            opset_version=OPSET,
+            input_names=[input_name],
+            output_names=[output_name],
+            dynamic_shapes=({0: batch},),
+            verbose=False,
+        )
     if program is None:
         raise BundleError(f"the exporter gave no program for {path}")
     program.optimize()
     path.write_bytes(_plain(program.model_proto).SerializeToString())
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Without the exporter's words on packages that it does not need, and on its own future."""
+    log = logging.getLogger("torch.onnx")
+    level = log.level
+    log.setLevel(logging.ERROR)
+    try:
+        with warnings.catch_warnings(category=FutureWarning, action="ignore"):
+            yield
+    finally:
+        log.setLevel(level)
 
 
 def _plain(model: onnx.ModelProto) -> onnx.ModelProto:

@@ -39,8 +39,9 @@ class SpatialAttention(nn.Module):
         shape = (3, config.features, 3 * config.features)
         self.queries_keys_values = nn.Parameter(torch.randn(shape) * config.features**-0.5)
         self.out = nn.Linear(config.width, config.width)
+        seen = adjacency() if config.adjacency else torch.ones_like(adjacency())
         # A large negative number and no infinity, so that no arithmetic on it can give NaN.
-        self.register_buffer("bias", torch.where(adjacency(), 0.0, -1e4))
+        self.register_buffer("bias", torch.where(seen, 0.0, -1e4))
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         """(B, T, 3 * J * F) -> the same shape."""
@@ -80,7 +81,7 @@ class EncoderLayer(nn.Module):
         super().__init__()
         self.attention_norm = nn.LayerNorm(config.width)
         self.temporal = TemporalAttention(config)
-        self.spatial = SpatialAttention(config)
+        self.spatial = SpatialAttention(config) if config.spatial else None
         self.dense_norm = nn.LayerNorm(config.width)
         self.dense = nn.Sequential(
             nn.Linear(config.width, 2 * config.width),
@@ -92,7 +93,10 @@ class EncoderLayer(nn.Module):
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         """(B, T, D) -> (B, T, D)."""
         normed = self.attention_norm(x)
-        x = x + self.dropout(self.temporal(normed) + self.spatial(normed))
+        mixed = self.temporal(normed)
+        if self.spatial is not None:
+            mixed = mixed + self.spatial(normed)
+        x = x + self.dropout(mixed)
         out: torch.Tensor = x + self.dropout(self.dense(self.dense_norm(x)))
         return out
 

@@ -10,7 +10,7 @@ from agent_server.errors import InvalidInput
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
 from agent_server.skeleton.formats import get_format
 from agent_server.skeleton.readers.msrc12 import read_msrc12
-from models.evaluation.real_streams import msrc12_stream_report
+from models.evaluation.real_streams import shipped_report
 from tests.support.bodies import core_joints
 from tests.support.models import covers_ears
 
@@ -43,7 +43,7 @@ def test_a_gesture_near_its_tag_counts_and_others_are_false(tmp_path):
     write(data, "P1_1_7_p01", "G7", 4.0, lambda t: False)
     write(data, "P1_1_2_p01", "G2", 4.0, lambda t: 2 <= t < 4)
     write(data, "P1_1_1_p01", "G1", 4.0, lambda t: 2 <= t < 4)  # resembles a gesture: left out
-    report = msrc12_stream_report(
+    report = shipped_report(
         RuleClassifier(covers_ears).classify, LastFramePredictor().predict, tmp_path
     )
     assert list(report["rows"]) == ["loud"]
@@ -58,7 +58,7 @@ def test_a_gesture_near_its_tag_counts_and_others_are_false(tmp_path):
 
 def test_a_folder_without_the_set_is_named(tmp_path):
     with pytest.raises(InvalidInput, match="msrc12"):
-        msrc12_stream_report(
+        shipped_report(
             RuleClassifier(covers_ears).classify, LastFramePredictor().predict, tmp_path
         )
 

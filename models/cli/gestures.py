@@ -1,0 +1,145 @@
+"""``python -m models gestures``: teach the agent gestures, and check what it learnt."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import torch
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from agent_server.inference.manifest import MODEL_FILE, Manifest, read_manifest
+from models.cli.options import (
+    CACHE,
+    CLASSIFIER,
+    PREDICTOR,
+    CacheOption,
+    JsonOption,
+    PredictorBundleOption,
+    ReportOption,
+    SeedOption,
+    show,
+)
+from models.data.labelled import check_known, read_gestures
+from models.evaluation.gesture_page import write_gesture_page
+from models.evaluation.session import OnnxModel
+from models.export.teach import Lesson, taught_figures, teach
+
+app = typer.Typer(no_args_is_help=True, help="Teach gestures of one's own.")
+
+FolderArgument = Annotated[
+    Path, typer.Argument(metavar="DIR", help="Folder of labelled *.mcap, or of MSRC-12's files.")
+]
+TagsOption = Annotated[
+    bool, typer.Option("--tags", help="Learn the data set's own names, which convert keeps.")
+]
+
+
+@app.command("train")
+def train(
+    folder: FolderArgument,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle to write.")],
+    encoder: Annotated[
+        Literal["fresh", "frozen"],
+        typer.Option("--encoder", help="Train all weights anew, or the head alone (faster)."),
+    ] = "fresh",
+    only: Annotated[bool, typer.Option("--only", help="Leave out the built-in gestures.")] = False,
+    held_out: Annotated[
+        str | None,
+        typer.Option("--held-out", help="The person whose recordings test; else the last."),
+    ] = None,
+    start: Annotated[
+        Path, typer.Option("--start", help="Bundle whose encoder a frozen lesson keeps.")
+    ] = CLASSIFIER,
+    predictor: PredictorBundleOption = PREDICTOR,
+    tags: TagsOption = False,
+    steps: Annotated[int | None, typer.Option("--steps", help="Updates.")] = None,
+    seed: SeedOption = 0,
+    as_json: JsonOption = False,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Train a classifier on recordings of several people, one of whom is held out."""
+    torch.set_num_threads(2)
+    lesson = Lesson(out, start, predictor, cache, encoder, only, held_out, steps, seed)
+    manifest = teach(read_gestures(folder, tags), lesson)
+    if as_json:
+        show({"bundle": str(out), **manifest.results}, as_json)
+    else:
+        _tell(manifest, out)
+
+
+@app.command("check")
+def check(
+    bundle: Annotated[Path, typer.Argument(metavar="BUNDLE", help="Bundle of a classifier.")],
+    folder: FolderArgument,
+    subject: Annotated[
+        list[str] | None,
+        typer.Option("--subject", help="Check on this person only; may be repeated."),
+    ] = None,
+    predictor: PredictorBundleOption = PREDICTOR,
+    tags: TagsOption = False,
+    report: ReportOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Confusion matrix, accuracy against time seen and calibration on labelled recordings."""
+    classes = tuple(read_manifest(bundle).labels)
+    read_manifest(predictor)
+    taught = read_gestures(folder, tags)
+    check_known(taught.gestures, classes, str(bundle))
+    people = tuple(subject) if subject else taught.subjects
+    check_known(people, taught.subjects, str(folder))
+    recordings = taught.of(*people)
+    classify, predict = OnnxModel(bundle / MODEL_FILE), OnnxModel(predictor / MODEL_FILE)
+    figures = taught_figures(classify, predict, recordings, classes)
+    if report is not None:
+        title = f"{bundle.resolve().name} on recordings of {', '.join(people)}"
+        page = write_gesture_page(
+            report, title, classify.batched, predict.batched, recordings, classes
+        )
+        Console(stderr=True).print(f"wrote {page}")
+    if as_json:
+        show(figures, as_json)
+    else:
+        _print_figures(figures, classes)
+
+
+def _tell(manifest: Manifest, out: Path) -> None:
+    people, minutes = manifest.results["people"], manifest.training.wall_s / 60
+    _print_figures(manifest.results, tuple(manifest.labels))
+    console = Console()
+    console.print(
+        f"\nTrained on {', '.join(people['train'])} in {minutes:.1f} minutes; the "
+        f" figures are of {people['test']}. The bundle is {out}:\n"
+        f"  agent-server serve --classifier {out}",
+        highlight=False,
+        soft_wrap=True,
+    )
+
+
+def _print_figures(figures: dict[str, Any], classes: tuple[str, ...]) -> None:
+    console = Console()
+    row = figures["1s+2s_predicted"]
+    table = Table(title="Which window is taken for what (rows: what it shows)")
+    table.add_column("")
+    for name in classes:
+        table.add_column(name, justify="right")
+    table.add_column("right", justify="right")
+    for name, counts in zip(classes, row["confusion"], strict=True):
+        right = f"{100 * row['recall'][name]:.0f} %" if sum(counts) else "-"
+        table.add_row(name, *(str(count or "") for count in counts), right)
+    console.print(table)
+    decided = figures["decisions"]
+    late = "-" if decided["delay_s_p50"] is None else f"{decided['delay_s_p50']:.2f} s"
+    console.print(
+        f"windows right: {100 * row['accuracy']:.1f} % "
+        f"(last frame held {100 * figures['1s+last_frame']['accuracy']:.1f} %, "
+        f"3 s seen {100 * figures['3s_true']['accuracy']:.1f} %)\n"
+        f"calibration error: {row['ece']:.3f}\n"
+        f"gestures decided on: {100 * decided['right']:.1f} % right, "
+        f"{100 * decided['wrong']:.1f} % wrong, {100 * decided['missed']:.1f} % missed, "
+        f"median {late} after onset\n"
+        f"false reactions to idle virtual people: "
+        f"{figures['idle_synthetic']['false_reactions']} in "
+        f"{figures['idle_synthetic']['minutes']} minutes",
+        highlight=False,
+    )
