@@ -106,7 +106,7 @@ async def _record(
     base = address(listener)
     async with serving(hub, listener) as stopped:
         where = base.replace("http", "ws", 1) + f"/v1/sessions/{session}/sensor"
-        console.print(f"Connect a sensor to  [bold]{where}[/]   (docs/protocol.md)")
+        console.print(f"Connect a sensor to  [bold]{where}[/]   (docs/protocol.md)", soft_wrap=True)
         if ip_address(listener.getsockname()[0]).is_loopback:
             console.print("It runs on this machine; for another one's add --host 0.0.0.0.")
         console.print(f"What it sees:        {base}/?session={session}   (Ctrl+C ends early)\n")
