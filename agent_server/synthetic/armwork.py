@@ -38,10 +38,14 @@ def _sideways(pen: Pen) -> None:
 
 def _push_side(pen: Pen) -> None:
     """One hand sweeps across, out or in."""
-    spots: list[Vector] = [(-0.08, -0.10, -0.36), (0.56, -0.08, -0.28)]
-    if pen.chance(0.5):
+    height = pen.uniform(-0.45, -0.02)
+    spots: list[Vector] = [
+        (pen.uniform(-0.12, 0.12), height, -pen.uniform(0.22, 0.42)),
+        (pen.uniform(0.42, 0.62), height + pen.rng.normal(0, 0.05), -pen.uniform(0.05, 0.35)),
+    ]
+    if pen.chance(0.35):
         spots.reverse()
-    end = pen.through((pen.main,), spots, 0.6, spread=0.07)
+    end = pen.through((pen.main,), spots, 0.6, spread=0.04)
     pen.lower((pen.main,), end + pen.uniform(0, 0.4))
     if pen.chance(0.5):
         pen.turn_and_back("trunk", pen.start_s, end + 0.5, degrees(0, 0, pen.rng.normal(0, 12)))
@@ -273,9 +277,9 @@ ARMWORK: Mapping[str, tuple[float, Writer]] = MappingProxyType(
     {
         "lift_arms": (1.5, _lift_arms),
         "sideways": (1.0, _sideways),
-        "push_side": (1.8, _push_side),
+        "push_side": (2.4, _push_side),
         "push_forward": (1.0, _push_forward),
-        "throw": (2.0, _throw),
+        "throw": (2.4, _throw),
         "shoot": (1.3, _shoot),
         "punch": (1.2, _punch),
         "club": (1.0, _club),
@@ -283,12 +287,12 @@ ARMWORK: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "strokes": (2.0, _strokes),
         "weapon": (2.2, _weapon),
         "drum": (1.3, _drum),
-        "beat_time": (0.8, _beat_time),
+        "beat_time": (1.2, _beat_time),
         "clap": (1.3, _clap),
         "knock": (1.4, _knock),
         "curl": (1.3, _curl),
         "catch": (0.8, _catch),
-        "signal": (1.5, _signal),
+        "signal": (2.0, _signal),
         "anything": (5.0, _anything),
     }
 )

@@ -12,8 +12,8 @@ from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees, fli
 from agent_server.synthetic.trajectory import ORIGIN, Vector
 
 Swivel = tuple[float, float]
-_FORWARD: Vector = (0.05, 0.0, -0.21)
-_SIDEWAYS: Vector = (0.28, 0.0, -0.12)
+_FORWARD: Vector = (0.04, -0.05, -0.22)
+_SIDEWAYS: Vector = (0.28, -0.06, -0.14)
 
 
 def _fidget(pen: Pen, hands: Hands, start_s: float, stop_s: float) -> None:
@@ -34,7 +34,7 @@ def _at_face(
     fingers: Vector,
     pitch: float,
     bow: Vector = _FORWARD,
-    median_s: float = 0.72,
+    median_s: float = 0.62,
 ) -> None:
     """Raises hands to the face, holds them there, lowers them."""
     arrival = pen.bring(
@@ -56,7 +56,7 @@ def _eyes_both(pen: Pen) -> None:
 
 
 def _eyes_one(pen: Pen) -> None:
-    place, spread = (0.09, -0.08, -0.145), (0.04, 0.034, 0.024)
+    place, spread = (0.08, -0.065, -0.15), (0.03, 0.026, 0.022)
     swivel = (40.0, 18.0)
     _at_face(pen, (pen.main,), place, spread, swivel, fingers=(-0.9, 0.4, 0.2), pitch=6)
 
@@ -110,7 +110,7 @@ def _ears_front(pen: Pen) -> None:
 
 
 def _pinch(pen: Pen) -> None:
-    place, spread = (0.055, -0.155, -0.17), (0.03, 0.03, 0.025)
+    place, spread = (0.05, -0.165, -0.17), (0.025, 0.024, 0.025)
     swivel = (70.0, 15.0) if pen.chance(0.25) else (32.0, 12.0)
     _at_face(pen, (pen.main,), place, spread, swivel, fingers=(-0.4, 0.7, 0.5), pitch=-3)
 

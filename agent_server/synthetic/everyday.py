@@ -114,7 +114,7 @@ def _chin(pen: Pen) -> None:
 
 
 def _phone(pen: Pen) -> None:
-    place, spread = (0.135, -0.09, -0.10), (0.02, 0.025, 0.025)
+    place, spread = (0.14, -0.125, -0.075), (0.018, 0.03, 0.025)
     _touch(pen, (pen.main,), place, spread, (2.0, 5.0), (50.0, 18.0))
 
 
@@ -273,15 +273,15 @@ EVERYDAY: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "nod": (0.6, _nod),
         "shift_weight": (1.6, _shift_weight),
         "lean": (1.5, _lean),
-        "scratch_head": (1.5, _scratch_head),
-        "scratch_cheek": (0.7, _scratch_cheek),
-        "hair": (1.2, _hair),
-        "glasses": (0.7, _glasses),
+        "scratch_head": (1.8, _scratch_head),
+        "scratch_cheek": (1.3, _scratch_cheek),
+        "hair": (1.5, _hair),
+        "glasses": (1.4, _glasses),
         "neck_rub": (0.8, _neck_rub),
-        "chin": (1.0, _chin),
-        "phone": (1.3, _phone),
-        "drink": (1.0, _drink),
-        "fold": (2.0, _fold),
+        "chin": (2.2, _chin),
+        "phone": (2.2, _phone),
+        "drink": (2.2, _drink),
+        "fold": (2.6, _fold),
         "hips": (1.2, _hips),
         "stretch": (1.2, _stretch),
         "talk": (3.0, _talk),

@@ -9,9 +9,10 @@ from agent_server.errors import InvalidInput
 from agent_server.synthetic.covering import COVERING
 from agent_server.synthetic.repeating import REPEATING
 from agent_server.synthetic.script import Pen, Script, Writer
+from agent_server.synthetic.waving import WAVING
 
 VARIANTS: Mapping[str, Mapping[str, tuple[float, Writer]]] = MappingProxyType(
-    {**COVERING, **REPEATING}
+    {**COVERING, **REPEATING, **WAVING}
 )
 """Gesture -> variant -> (how often, what writes it)."""
 

@@ -37,7 +37,9 @@ class Reach:
         swivel_rad: How far the elbow is turned outwards about the line from shoulder to wrist:
             0 hangs below it, a quarter turn points sideways. See ``body.elbow_direction``.
         hand: Direction added to the forearm's for the fingers, in the chest frame.
-        bow: Largest deviation of the path from the straight one, in the chest frame.
+        bow: Deviation of the path from the straight one in its middle, in the chest frame.
+        late: How much more of the bow lies on the second half of the path (up to 1) than on the
+            first half (down to -1); forearms swing ahead before they fold up.
         skew: Exponent on the relative time.
     """
 
@@ -49,6 +51,7 @@ class Reach:
     hand: Vector = ORIGIN
     bow: Vector = ORIGIN
     skew: float = 1.0
+    late: float = 0.0
 
     @property
     def end_s(self) -> float:
@@ -143,7 +146,8 @@ def _arm(
             parts[index] = held[mine].T @ points[mine]
             weights[:, index] = held[mine].sum(axis=0)
     bows = np.array([r.bow for r in reaches])
-    parts[0] += (4 * shares * (1 - shares)).T @ bows
+    late = np.array([r.late for r in reaches])[:, None]
+    parts[0] += (4 * shares * (1 - shares) * (1 + late * (2 * shares - 1))).T @ bows
     parts[0] += involuntary + oscillate(arm.swings, times_s)
     swivels = held.T @ np.array([r.swivel_rad for r in reaches])
     hands = held.T @ np.array([r.hand for r in reaches])

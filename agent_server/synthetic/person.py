@@ -103,7 +103,7 @@ class Person:
             shank_m=segment(0.246),
             foot_m=segment(0.105),
             handedness="right" if rng.random() < 0.89 else "left",
-            tempo=float(np.exp(rng.normal(0, 0.18))),
+            tempo=float(np.exp(rng.normal(0.1, 0.2))),
             vigour=float(np.exp(rng.normal(0, 0.15))),
             liveliness=float(np.exp(rng.normal(0, 0.45))),
             asymmetry_s=float(abs(rng.normal(0, 0.05))),

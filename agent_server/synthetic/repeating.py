@@ -1,7 +1,6 @@
-"""Gestures that repeat a movement: ``cold`` (rubbing), ``hot`` (fanning), ``hello`` (waving).
+"""Gestures that repeat a movement: ``cold`` (rubbing) and ``hot`` (fanning).
 
-Points are written outwards, up and back, in metres for the reference stature. How far and how
-fast hands swing was tuned on Kinect recordings of people who wave; see ``docs/synthetic.md``.
+Points are written outwards, up and back, in metres for the reference stature.
 """
 
 from collections.abc import Mapping
@@ -11,9 +10,6 @@ import numpy as np
 
 from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees, flinch
 from agent_server.synthetic.trajectory import Vector
-
-Swivel = tuple[float, float]
-
 
 # --------------------------------------------------------------------------- hot
 
@@ -135,7 +131,7 @@ def _one_arm(pen: Pen) -> None:
     if bent:
         point = pen.around((0.04, -0.38, -0.26), (0.05, 0.05, 0.03))
         pen.reach(other, start, pen.seconds(0.8), "chest", point, bow=(0.0, 0.0, -0.05))
-    place, spread = (-0.13, -0.22, -0.17), (0.03, 0.05, 0.025)
+    place, spread = (-0.14, -0.22, -0.155), (0.025, 0.04, 0.02)
     arrival = pen.bring((side,), "chest", place, spread, (42.0, 10.0), fingers=(-0.7, 0.2, 0.5))
     release = arrival + max(1.0, pen.hold())
     size = pen.uniform(0.03, 0.09) * pen.person.vigour
@@ -168,86 +164,6 @@ def _alternating(pen: Pen) -> None:
     _shiver(pen, start, end)
 
 
-# --------------------------------------------------------------------------- hello
-
-
-def _wave(
-    pen: Pen,
-    hands: Hands,
-    centre: Vector,
-    spread: Vector,
-    swivel: Swivel,
-    *,
-    size: tuple[float, float],
-    rate: tuple[float, float],
-) -> None:
-    """Hands swing sideways."""
-    arrival = pen.bring(
-        hands,
-        "chest",
-        centre,
-        spread,
-        swivel,
-        fingers=(0.0, 0.7, 0.0),
-        median_s=pen.uniform(0.45, 0.85),
-    )
-    frequency = pen.uniform(*rate) * pen.person.tempo**0.5
-    release = arrival + max(0.8 * pen.hold(), 1.5 / frequency)
-    amplitude = pen.uniform(*size) * pen.person.vigour * min(1.0, 2.2 / frequency)
-    mirrored = pen.chance(0.7)
-    depth = pen.rng.normal(0, 0.25) * amplitude
-    sink = pen.uniform(0.0, 0.2) * amplitude
-    for side in hands:
-        sign = 1 if mirrored or side == 0 else -1
-        pen.swing(
-            side,
-            arrival - pen.uniform(0.1, 0.35),
-            release + 0.15,
-            (sign * amplitude, 0.0, depth),
-            frequency,
-            across=(0.0, sink, 0.1 * amplitude),
-            phase_rad=pen.rng.normal(0, 0.4),
-            ramp_s=0.2,
-        )
-    end = pen.lower(hands, release, median_s=pen.uniform(0.5, 0.9))
-    if pen.chance(0.3):
-        nod = degrees(pen.uniform(-6, 8), pen.rng.normal(0, 4), pen.rng.normal(0, 5))
-        pen.turn_and_back("head", pen.start_s, end, nod)
-    if pen.chance(0.25):
-        lean = degrees(pen.uniform(-3, 5), pen.rng.normal(0, 3), pen.rng.normal(0, 4))
-        pen.turn_and_back("trunk", pen.start_s, end, lean)
-
-
-def _beside_head(pen: Pen) -> None:
-    place, spread = (0.33, 0.13, -0.28), (0.07, 0.07, 0.08)
-    _wave(pen, (pen.main,), place, spread, (22.0, 14.0), size=(0.07, 0.21), rate=(1.3, 3.0))
-
-
-def _before_face(pen: Pen) -> None:
-    place, spread = (0.22, 0.12, -0.38), (0.08, 0.07, 0.05)
-    _wave(pen, (pen.main,), place, spread, (26.0, 12.0), size=(0.10, 0.28), rate=(1.2, 2.8))
-
-
-def _high(pen: Pen) -> None:
-    place, spread = (0.28, 0.42, -0.16), (0.07, 0.05, 0.08)
-    _wave(pen, (pen.main,), place, spread, (45.0, 16.0), size=(0.08, 0.25), rate=(0.9, 2.4))
-
-
-def _small(pen: Pen) -> None:
-    place, spread = (0.30, -0.08, -0.25), (0.05, 0.06, 0.06)
-    _wave(pen, (pen.main,), place, spread, (16.0, 10.0), size=(0.03, 0.08), rate=(1.8, 3.6))
-
-
-def _both_hands(pen: Pen) -> None:
-    place, spread = (0.32, 0.14, -0.26), (0.05, 0.10, 0.07)
-    _wave(pen, BOTH, place, spread, (25.0, 14.0), size=(0.06, 0.18), rate=(1.2, 3.0))
-
-
-def _both_high(pen: Pen) -> None:
-    place, spread = (0.27, 0.42, -0.14), (0.07, 0.05, 0.07)
-    _wave(pen, BOTH, place, spread, (45.0, 14.0), size=(0.08, 0.22), rate=(0.9, 2.2))
-
-
 REPEATING: Mapping[str, Mapping[str, tuple[float, Writer]]] = MappingProxyType(
     {
         "cold": {
@@ -262,14 +178,6 @@ REPEATING: Mapping[str, Mapping[str, tuple[float, Writer]]] = MappingProxyType(
             "fan_both": (2.0, _fan_both),
             "neck": (1.5, _neck),
             "collar": (1.0, _collar),
-        },
-        "hello": {
-            "beside_head": (3.0, _beside_head),
-            "before_face": (2.0, _before_face),
-            "high": (1.5, _high),
-            "small": (1.5, _small),
-            "both": (1.0, _both_hands),
-            "both_high": (0.7, _both_high),
         },
     }
 )

@@ -19,6 +19,8 @@ HOMEWARDS: Vector = (0.07, 0.0, -0.13)
 """How far the way back to rest typically swings out."""
 SECONDS_PER_METRE = 0.36
 """Nobody moves a hand faster: a minimum-jerk peak of 1.875 / 0.36 = 5.2 m/s."""
+LOOSE_SHARE = 0.2
+"""How often both hands do not move as one: people's hands mostly start within 40 ms."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +88,9 @@ class Pen:
         self._turns: dict[str, list[Move]] = {"trunk": [], "head": [], "pelvis": []}
         self._sways: dict[str, list[Oscillation]] = {"trunk": [], "head": [], "pelvis": []}
         self._feet: tuple[list[Move], list[Move]] = ([], [])
-        delay = rng.normal(0, 0.5 * person.asymmetry_s + 0.03)
+        self.pace = person.tempo * float(np.exp(np.clip(rng.normal(0, 0.15), -0.3, 0.3)))
+        loose = 4.0 if rng.random() < LOOSE_SHARE else 1.0
+        delay = loose * rng.normal(0, 0.3 * person.asymmetry_s + 0.012)
         self._delay = (max(0.0, delay), max(0.0, -delay))
 
     # ------------------------------------------------------------------ drawing numbers
@@ -108,7 +112,7 @@ class Pen:
     def seconds(self, median: float, spread: float = 0.25) -> float:
         """A duration of this person, log-normal around ``median``."""
         drawn = median * np.exp(np.clip(self.rng.normal(0, spread), -2 * spread, 2 * spread))
-        return float(drawn / self.person.tempo)
+        return float(drawn / self.pace)
 
     def hold(self) -> float:
         """How long a gesture is held: 0.6 to 4 s, mostly 1 to 2."""
@@ -127,6 +131,7 @@ class Pen:
         *,
         hand: Vector = ORIGIN,
         bow: Vector = ORIGIN,
+        late: float = 0.0,
     ) -> float:
         """Moves one wrist; returns when it arrives.
 
@@ -139,6 +144,7 @@ class Pen:
             swivel: Degrees by which the elbow is turned outwards; None lets it hang naturally.
             hand: Direction of the fingers beside the forearm's.
             bow: How far the path swings out, in the chest frame.
+            late: Whether it does so on its second half, see ``performance.Reach``.
         """
         before = self._reaches[side][-1] if self._reaches[side] else self.rest[side]
         here, there = from_neck(before.frame, before.point), from_neck(frame, point)
@@ -148,7 +154,8 @@ class Pen:
         turned = natural_swivel(frame, point) if swivel is None else swivel
         turned += float(np.clip(self.rng.normal(0, 4), -8, 8))
         skew = float(np.clip(self.rng.normal(1.0, 0.12), 0.8, 1.3))
-        reach = Reach(start_s, duration_s, frame, point, float(np.radians(turned)), hand, bow, skew)
+        swivel_rad = float(np.radians(turned))
+        reach = Reach(start_s, duration_s, frame, point, swivel_rad, hand, bow, skew, late)
         self._reaches[side].append(reach)
         return reach.end_s
 
@@ -185,28 +192,34 @@ class Pen:
         shared = self.around(centre, spread)
         mean = natural_swivel(frame, shared) if swivel is None else swivel[0]
         turned = float(np.clip(self.rng.normal(mean, swivel[1] if swivel else 8.0), -30, 130))
-        path = self.around(bow, (0.05 + 0.3 * bow[0], 0.02, 0.06))
+        path = self.around(bow, (0.05 + 0.3 * bow[0], 0.04, 0.06))
         start = self.start_s if start_s is None else start_s
         duration = self.seconds(median_s)
         arrival = start
+        late = float(np.clip(self.rng.normal(0.6, 0.4), -0.4, 1.0))
+        pause = self.around((0.14, -0.28, -0.27), 0.05) if self.chance(0.07) else None
+        stay = self.uniform(-0.1, 0.3)
         for side in hands:
             point = self.around(np.add(shared, apart.get(side, ORIGIN)), 0.012)
             hand = self.around(fingers, 0.12)
             curve = self.around(path, 0.015)
             begin = start + (self._delay[side] if len(hands) > 1 else 0.0)
-            mine = duration * self.uniform(0.93, 1.07)
-            if self.chance(0.07):
-                pause = self.around((0.14, -0.28, -0.27), 0.05)
+            mine = duration * self.uniform(0.97, 1.03)
+            if pause is not None:
                 stop = self.reach(side, begin, 0.7 * mine, "chest", pause, bow=curve)
-                begin = stop + self.uniform(-0.1, 0.3)
+                begin = stop + stay
                 mine *= 0.7
                 curve = ORIGIN
             if self.chance(0.25):
                 short = self.around(point, (0.02, 0.035, 0.02))
-                stop = self.reach(side, begin, mine, frame, short, turned, hand=hand, bow=curve)
+                stop = self.reach(
+                    side, begin, mine, frame, short, turned, hand=hand, bow=curve, late=late
+                )
                 begin, mine = stop - 0.15 * mine, self.uniform(0.25, 0.4)
                 curve = ORIGIN
-            end = self.reach(side, begin, mine, frame, point, turned, hand=hand, bow=curve)
+            end = self.reach(
+                side, begin, mine, frame, point, turned, hand=hand, bow=curve, late=late
+            )
             arrival = max(arrival, end)
         return arrival
 
@@ -252,6 +265,7 @@ class Pen:
         bow: Vector,
     ) -> float:
         path = self.around(bow, (0.04 + 0.3 * bow[0], 0.03, 0.05))
+        late = float(np.clip(self.rng.normal(-0.4, 0.4), -1.0, 0.4))
         end = start_s
         for side in hands:
             rest = rests[side]
@@ -260,7 +274,15 @@ class Pen:
             curve = self.around(path, 0.02)
             swivel = float(np.degrees(rest.swivel_rad))
             arrival = self.reach(
-                side, begin, mine, rest.frame, rest.point, swivel, hand=rest.hand, bow=curve
+                side,
+                begin,
+                mine,
+                rest.frame,
+                rest.point,
+                swivel,
+                hand=rest.hand,
+                bow=curve,
+                late=late,
             )
             end = max(end, arrival)
         return end
@@ -277,12 +299,13 @@ class Pen:
         phase_rad: float = 0.0,
         ramp_s: float = 0.25,
         unevenness: float | None = None,
+        arc: Vector = ORIGIN,
     ) -> None:
         """Lets one wrist swing about where it is, in the chest frame."""
         uneven = self.uniform(0.0, 0.35) if unevenness is None else unevenness
         ramp = min(ramp_s, 0.45 * (stop_s - start_s))
         self._swings[side].append(
-            Oscillation(start_s, stop_s, ramp, along, across, frequency_hz, phase_rad, uneven)
+            Oscillation(start_s, stop_s, ramp, along, across, frequency_hz, phase_rad, uneven, arc)
         )
 
     # ------------------------------------------------------------------ the rest of the body

@@ -54,6 +54,7 @@ class Oscillation:
         frequency_hz: Mean frequency.
         phase_rad: Phase at the start.
         unevenness: Relative modulation of phase and amplitude from cycle to cycle.
+        arc: Displacement at both ends of the swing, as of a hand that turns about its elbow.
     """
 
     start_s: float
@@ -64,6 +65,7 @@ class Oscillation:
     frequency_hz: float
     phase_rad: float
     unevenness: float = 0.0
+    arc: Vector = ORIGIN
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +124,7 @@ def oscillate(swings: Sequence[Oscillation], times_s: Float64) -> Float64:
         envelope = envelope * (1 + 0.6 * swing.unevenness * slow)
         value[inside] += (envelope * np.sin(phase))[:, None] * np.asarray(swing.along)
         value[inside] += (envelope * np.cos(phase))[:, None] * np.asarray(swing.across)
+        value[inside] += (envelope * np.sin(phase) ** 2)[:, None] * np.asarray(swing.arc)
     return value
 
 

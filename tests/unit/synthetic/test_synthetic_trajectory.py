@@ -1,6 +1,7 @@
 import numpy as np
 
 from agent_server.synthetic.trajectory import (
+    ORIGIN,
     Move,
     Oscillation,
     blend,
@@ -43,6 +44,16 @@ def test_a_swing_has_its_frequency_and_leaves_the_rest_alone() -> None:
     crossings = np.count_nonzero(np.diff(np.sign(inside)))
     assert crossings in (4, 5)  # 1.2 s of 2 Hz
     np.testing.assert_allclose(abs(value).max(axis=0), (0.1, 0.05, 0.0), atol=1e-3)
+
+
+def test_a_swing_on_an_arc_sinks_at_both_ends_and_not_in_its_middle() -> None:
+    arc = (0.0, -0.04, 0.0)
+    swing = Oscillation(0.0, 4.0, 0.3, (0.2, 0.0, 0.0), ORIGIN, 1.0, 0.0, arc=arc)
+    inside = oscillate([swing], TIMES)[500:3500]
+    ends, middle = abs(inside[:, 0]) > 0.199, abs(inside[:, 0]) < 0.01
+    np.testing.assert_allclose(inside[ends, 1], -0.04, atol=1e-3)
+    np.testing.assert_allclose(inside[middle, 1], 0.0, atol=1e-3)
+    assert (inside[ends, 0] > 0).any() and (inside[ends, 0] < 0).any()
 
 
 def test_drift_has_the_size_that_was_asked_for() -> None:
