@@ -1,7 +1,7 @@
 """Recordings of one's own: MCAP files with labels, or MSRC-12's own files, as windows see them."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +12,8 @@ from agent_server.errors import InvalidInput
 from agent_server.recording import topics
 from agent_server.recording.reader import RawInput, open_recording
 from agent_server.recording.records import LabelRecord
+from agent_server.skeleton.retarget import navel_distance
+from agent_server.skeleton.subject import SubjectLock
 from models.data.msrc12 import read_streams, tagged_recordings
 from models.data.real import core_stream, labelled_recordings
 from models.data.windows import Recording
@@ -114,7 +116,7 @@ def _read(path: Path, tags: bool) -> list[Recording]:
         raise InvalidInput(
             f"{path} has labels of {', '.join(sorted(subjects))}: record one person a file"
         )
-    stream = core_stream(_main_body(recording.events()))
+    stream = core_stream(_followed(recording.events()))
     if len(stream.positions) < CLASSIFIED_FRAMES:
         raise InvalidInput(
             f"{path} has {len(stream.positions) / RATE_HZ:.1f} s of skeletons, at least "
@@ -128,11 +130,12 @@ def _read(path: Path, tags: bool) -> list[Recording]:
     return labelled_recordings(stream, shown, labels[0].subject)
 
 
-def _main_body(events: Iterable[RawInput]) -> list[SkeletonFrame]:
-    """The frames of the body that is seen most."""
-    frames = [event for event in events if isinstance(event, SkeletonFrame)]
-    count = Counter(frame.body_id for frame in frames)
-    if not count:
-        return []
-    body = count.most_common(1)[0][0]
-    return [frame for frame in frames if frame.body_id == body]
+def _followed(events: Iterable[RawInput]) -> Iterator[SkeletonFrame]:
+    """The frames of the person whom the server would follow, whichever id the sensor gives."""
+    lock = SubjectLock("nearest")
+    for frame in events:
+        if not isinstance(frame, SkeletonFrame):
+            continue
+        lock.advance(frame.originating_ns)
+        if lock.offer(frame.body_id, navel_distance(frame), frame.originating_ns):
+            yield frame

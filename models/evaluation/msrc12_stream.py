@@ -28,9 +28,10 @@ from models.data.msrc12 import (
     tagged_recordings,
 )
 from models.data.windows import Recording, cut
+from models.evaluation.forecasters import SERVER_BUNDLE
 from models.evaluation.gestures import HOP_FRAMES, decisions, sliding_seen
-from models.evaluation.msrc12_windows import CLASSIFIER, COMMAND, fold_predictors
-from models.evaluation.rows import Held
+from models.evaluation.msrc12_windows import CLASSIFIER
+from models.evaluation.rows import Bundled, Held
 from models.interformer.config import NetworkConfig, TrainConfig
 from models.interformer.train import completed, load_classifier, train
 from models.training.run import INFO, Run
@@ -44,6 +45,7 @@ CONFIGS: dict[str, TrainConfig] = {
     ),
 }
 CONFIGS["seen_only"] = replace(CONFIGS["predicted"], futures="held")
+COMMAND = "python -m models evaluate gestures --benchmark msrc12-stream --data DIR"
 ENTER = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 ENTER_WINDOWS = (1, 2, 3)
 
@@ -157,14 +159,14 @@ def msrc12_stream_report(data: Path, folder: Path, seed: int = 0) -> dict[str, A
         seed: Of every training.
     """
     torch.set_num_threads(1)
+    expected = Bundled(SERVER_BUNDLE)
     streams = read_streams(data / "msrc12")
     held: dict[str, list[Watched]] = {name: [] for name in CONFIGS}
     tested: dict[str, list[Watched]] = {name: [] for name in CONFIGS}
     for number, fold in enumerate(folds([one.subject for one in streams])):
         place = folder / f"rotation_{number}"
-        ma_wgan = fold_predictors(streams, fold, place, seed)["ma_wgan"]
         for name, config in CONFIGS.items():
-            predictor = ma_wgan if name == "predicted" else Held()
+            predictor = expected if name == "predicted" else Held()
             network = _trained(config, streams, fold, place / f"stream_{name}", predictor, seed)
             held[name] += _watch(network, predictor, config, streams, fold.validation)
             tested[name] += _watch(network, predictor, config, streams, fold.test)

@@ -16,7 +16,9 @@ from torch import nn
 
 from agent_server.domain.arrays import Float32
 from agent_server.domain.motion import SEEN_FRAMES
+from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.data.windows import WindowSet
+from models.evaluation.session import OnnxModel
 from models.interformer.config import TrainConfig
 from models.interformer.train import hold_last, load_classifier, train, window_logits
 from models.training.run import INFO, Run
@@ -28,6 +30,23 @@ class Held(nn.Module):
     def forward(self, seen: torch.Tensor) -> torch.Tensor:
         """(B, 25, 9, 3) -> (B, 50, 9, 3)."""
         return hold_last(seen)
+
+
+class Bundled(nn.Module):
+    """The predictor of a bundle, as training wants it.
+
+    Raises:
+        BundleError: If the bundle is not whole.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        read_manifest(folder)
+        self.model = OnnxModel(folder / MODEL_FILE)
+
+    def forward(self, seen: torch.Tensor) -> torch.Tensor:
+        """(B, 25, 9, 3) -> (B, 50, 9, 3)."""
+        return torch.from_numpy(self.model.batched(seen.numpy()))
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,6 +26,8 @@ def restore_classifier(folder: Path) -> Calibrated:
         BundleError: If the bundle holds another network, or the weights do not give its goldens.
     """
     manifest = read_manifest(folder)
+    if manifest.task != "classify":
+        raise BundleError(f"{folder} holds no classifier but a model that can {manifest.task}")
     graph = onnx.load(folder / MODEL_FILE).graph
     values = {each.name: numpy_helper.to_array(each) for each in graph.initializer}
     products = {node.output[0]: node for node in graph.node if node.op_type == "MatMul"}

@@ -8,11 +8,10 @@ from typing import Any, Literal
 
 import numpy as np
 import torch
-from torch import nn
 
 from agent_server.domain.gesture import DISCOMFORTS, HELLO, IDLE
 from agent_server.errors import InvalidInput
-from agent_server.inference.manifest import MODEL_FILE, DataSource, Manifest, read_manifest
+from agent_server.inference.manifest import DataSource, Manifest, read_manifest
 from agent_server.synthetic.corpus import subject_names
 from models.data import synthetic
 from models.data.labelled import GestureSet, check_repetitions
@@ -28,6 +27,7 @@ from models.evaluation.gestures import (
     scores,
 )
 from models.evaluation.latency import latency_ms
+from models.evaluation.rows import Bundled
 from models.evaluation.session import OnnxModel
 from models.export.bundle import Export, write_bundle
 from models.export.calibration import fit_temperature
@@ -105,18 +105,6 @@ class Lesson:
         )
 
 
-class Frozen(nn.Module):
-    """The predictor of a bundle as training wants it."""
-
-    def __init__(self, model: OnnxModel) -> None:
-        super().__init__()
-        self.model = model
-
-    def forward(self, seen: torch.Tensor) -> torch.Tensor:
-        """(B, 25, 9, 3) -> (B, 50, 9, 3)."""
-        return torch.from_numpy(self.model.batched(seen.numpy()))
-
-
 def choose_people(subjects: Sequence[str], held_out: str | None) -> People:
     """Who does what.
 
@@ -155,17 +143,17 @@ def teach(taught: GestureSet, lesson: Lesson) -> Manifest:
         taught.of(people.validation), "validation", classes, taught.gestures, lesson
     )
     config = lesson.config(len(classes))
-    predict = OnnxModel(lesson.predictor / MODEL_FILE)
+    predictor = Bundled(lesson.predictor)
     network = _started(lesson, config, classes)
     with tempfile.TemporaryDirectory() as scratch:
         run = Run(Path(scratch) / "run", config, lesson.seed, lesson.command(), resume=False)
-        train(config, run, training, validation, Frozen(predict), network)
+        train(config, run, training, validation, predictor, network)
         best, info = load_classifier(run.folder), run.info
     judged = validation.take((validation.labels != AMBIGUOUS).nonzero()[:, 0])
-    logits = window_logits(best, Frozen(predict), judged, config, torch.device("cpu"))
+    logits = window_logits(best, predictor, judged, config, torch.device("cpu"))
     calibrated = Calibrated(best, fit_temperature(logits, judged.labels)).eval()
     seen, _, _ = labelled_windows(cut(taught.of(people.test), 1, classes))
-    windows = np.concatenate([seen, predict.batched(seen)], axis=1)
+    windows = np.concatenate([seen, predictor.model.batched(seen)], axis=1)
     spread = np.linspace(0, len(windows) - 1, 64).astype(int)
     export = Export(
         name=lesson.out.resolve().name,
@@ -181,7 +169,7 @@ def teach(taught: GestureSet, lesson: Lesson) -> Manifest:
     )
 
     def measure(path: Path) -> dict[str, Any]:
-        figures = taught_figures(OnnxModel(path), predict, taught.of(people.test), classes)
+        figures = taught_figures(OnnxModel(path), predictor.model, taught.of(people.test), classes)
         return {
             **figures,
             "temperature": float(calibrated.temperature),
