@@ -1,5 +1,6 @@
 """``agent-server bench``."""
 
+from pathlib import Path
 from typing import Annotated
 
 import msgspec
@@ -8,6 +9,7 @@ import typer
 from agent_server.bench.decision import measure_decisions
 from agent_server.bench.ingest import measure_ingest
 from agent_server.bench.load import LoadResult, measure_load
+from agent_server.bench.reactions import measure_reactions, played, recorded
 from agent_server.cli.options import JsonOption, run
 from agent_server.config import Settings
 from agent_server.transports.server import load_models, load_room
@@ -33,6 +35,23 @@ def decision(
     models = load_models()
     rules = load_room(Settings(), models)
     _show(measure_decisions(models, rules, rounds), as_json=as_json)
+
+
+@bench.command()
+def reactions(
+    folder: Annotated[
+        Path | None, typer.Argument(metavar="DIR", help="Folder of labelled recordings.")
+    ] = None,
+    seeds: Annotated[
+        int, typer.Option(min=1, help="Without DIR: how often to play each scenario anew.")
+    ] = 3,
+    as_json: JsonOption = False,
+) -> None:
+    """From a gesture's onset to the reaction, and reactions that nobody asked for."""
+    models = load_models()
+    rules = load_room(Settings(), models)
+    streams = played(seeds) if folder is None else recorded(folder)
+    _show(measure_reactions(models, rules, streams), as_json=as_json)
 
 
 @bench.command()
