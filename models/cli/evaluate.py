@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import torch
 import typer
 
+from agent_server.domain.gesture import GESTURES
 from models.cli.options import (
     CACHE,
     CLASSIFIER,
@@ -22,8 +23,10 @@ from models.cli.options import (
     model_of,
     show,
 )
+from models.data.splits import synthetic_split
 from models.evaluation.ablations import ablation_report
 from models.evaluation.forecasters import bundled, forecaster
+from models.evaluation.gesture_page import write_gesture_page
 from models.evaluation.latency import bundle_latency
 from models.evaluation.msrc12_stream import msrc12_stream_report
 from models.evaluation.msrc12_windows import msrc12_report
@@ -90,13 +93,22 @@ def evaluate_gestures(
     runs: Annotated[
         Path, typer.Option("--runs", help="Where benchmarks keep what they train.")
     ] = Path("runs/gestures"),
+    report: ReportOption = None,
     as_json: JsonOption = False,
     cache: CacheOption = CACHE,
 ) -> None:
     """Accuracy, calibration, delays and false reactions of a classifier.
 
-    Benchmarks that train keep their runs, and only measure again what they find there.
+    Benchmarks that train keep their runs, and only measure again what they find there. The page
+    shows the synthetic one.
     """
+    if report is not None:
+        if benchmark != "synthetic":
+            raise typer.BadParameter("there is a page of --benchmark synthetic only")
+        title = f"SYNTHETIC benchmark: `{bundle.name}` with `{predictor.name}` on virtual people"
+        recordings = synthetic_split(cache, "test")
+        models = model_of(bundle).batched, model_of(predictor).batched
+        print(write_gesture_page(report, title, *models, recordings, GESTURES), file=sys.stderr)
     match benchmark:
         case "thesis":
             found = thesis_report(runs / "thesis")

@@ -94,5 +94,6 @@ def table(corner: str, headings: list[str], body: str) -> str:
 
 
 def marked(text: str) -> str:
-    """Escaped text, with what stands in backticks set as code."""
-    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
+    """Escaped text: what stands in backticks is code, and a number keeps its unit beside it."""
+    whole = re.sub(r"(?<=\d) (?=(?:s|ms|mm|%)(?!\w))", "\u00a0", escape(text))
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", whole)
