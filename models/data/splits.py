@@ -1,12 +1,11 @@
 """Which people and which files train, validate and test."""
 
-from collections.abc import Collection
 from pathlib import Path
 from typing import Literal
 
 from agent_server.synthetic.corpus import subject_names
 from models.data.cmu import IDLE_ACTIONS, held_out, read_cmu
-from models.data.synthetic import cached_recordings
+from models.data.synthetic import SERVER_MIX, Mix, cached_recordings
 from models.data.windows import Recording
 
 Split = Literal["train", "validation", "test"]
@@ -43,7 +42,7 @@ def cmu_split(data: Path, split: Split) -> list[Recording]:
 
 
 def synthetic_split(
-    cache: Path, split: Split, sequences: int = 0, without: Collection[str] = ()
+    cache: Path, split: Split, sequences: int = 0, mix: Mix = SERVER_MIX
 ) -> list[Recording]:
     """Synthetic recordings of a split.
 
@@ -51,11 +50,11 @@ def synthetic_split(
         cache: Folder where generated recordings are kept.
         split: Which people.
         sequences: How many to train on; the other splits have a fixed number.
-        without: Idle actions that are left out.
+        mix: What the takes are a mix of.
     """
     if split == "train":
         people = subject_names(TRAIN_PEOPLE)
-        return cached_recordings(cache, SYNTHETIC_SEED, sequences, people, without)
+        return cached_recordings(cache, SYNTHETIC_SEED, sequences, people, mix)
     first, count, takes = HELD_OUT[split]
     people = subject_names(count, first)
-    return cached_recordings(cache, SYNTHETIC_SEED + first, takes, people, without)
+    return cached_recordings(cache, SYNTHETIC_SEED + first, takes, people, mix)

@@ -1,8 +1,8 @@
 """Recordings of virtual people, as a sensor sees them and as they would be without its noise."""
 
 import hashlib
-from collections.abc import Collection, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,12 +23,26 @@ TAIL_S = (PREDICTED_FRAMES / RATE_HZ + 0.2, PREDICTED_FRAMES / RATE_HZ + 1.2)
 """Rest after the action, so that windows reach past its end."""
 
 
+@dataclass(frozen=True, slots=True)
+class Mix:
+    """What takes are a mix of.
+
+    Attributes:
+        idle: Share of idle takes; gestures share the rest alike.
+        sensors: How often each of ``SENSORS`` looks on.
+        without: Idle actions that are left out, because they mean something.
+    """
+
+    idle: float = IDLE_SHARE
+    sensors: tuple[float, ...] = SENSOR_SHARES
+    without: tuple[str, ...] = ()
+
+
+SERVER_MIX = Mix()
+
+
 def synthetic_recordings(
-    seed: int,
-    count: int,
-    subjects: Sequence[str],
-    without: Collection[str] = (),
-    shares: Sequence[float] = SENSOR_SHARES,
+    seed: int, count: int, subjects: Sequence[str], mix: Mix = SERVER_MIX
 ) -> list[Recording]:
     """Draw ``count`` takes of one action each; take i depends on the seed and i alone.
 
@@ -36,18 +50,15 @@ def synthetic_recordings(
         seed: Where everything comes from.
         count: How many takes.
         subjects: Names of the people.
-        without: Idle actions that are left out, because they mean something.
-        shares: How often each of ``SENSORS`` looks on.
+        mix: What of.
     """
     group = people(seed, subjects)
-    return [
-        _take(np.random.default_rng([seed, 11, i]), group, subjects, without, shares)
-        for i in range(count)
-    ]
+    rngs = (np.random.default_rng([seed, 11, index]) for index in range(count))
+    return [_take(rng, group, subjects, mix) for rng in rngs]
 
 
 def cached_recordings(
-    cache: Path, seed: int, count: int, subjects: Sequence[str], without: Collection[str] = ()
+    cache: Path, seed: int, count: int, subjects: Sequence[str], mix: Mix = SERVER_MIX
 ) -> list[Recording]:
     """The same, kept in a file until the generator gives other takes.
 
@@ -56,29 +67,25 @@ def cached_recordings(
         seed: Where everything comes from.
         count: How many takes.
         subjects: Names of the people.
-        without: Idle actions that are left out.
+        mix: What of.
     """
-    words = repr((3, seed, count, tuple(subjects), sorted(without), _probe(seed, subjects)))
+    words = repr((4, seed, count, tuple(subjects), mix, _probe(seed, subjects)))
     path = cache / f"synthetic-{hashlib.sha256(words.encode()).hexdigest()[:16]}.npz"
     if not path.exists():
         cache.mkdir(parents=True, exist_ok=True)
-        _write(path, synthetic_recordings(seed, count, subjects, without))
+        _write(path, synthetic_recordings(seed, count, subjects, mix))
     return _read(path)
 
 
 def _take(
-    rng: np.random.Generator,
-    group: dict[str, Person],
-    subjects: Sequence[str],
-    without: Collection[str],
-    shares: Sequence[float],
+    rng: np.random.Generator, group: dict[str, Person], subjects: Sequence[str], mix: Mix
 ) -> Recording:
     person = group[str(rng.choice(list(subjects)))]
-    idle = rng.random() < IDLE_SHARE
+    idle = rng.random() < mix.idle
     gesture = IDLE if idle else str(rng.choice([*DISCOMFORTS, HELLO]))
-    sensor = SENSORS[int(rng.choice(len(SENSORS), p=shares))]
+    sensor = SENSORS[int(rng.choice(len(SENSORS), p=mix.sensors))]
     clip = sample_clip(rng, gesture, person)
-    while clip.variant in without:
+    while clip.variant in mix.without:
         clip = sample_clip(rng, gesture, person)
     clip = replace(clip, duration_s=clip.offset_s + float(rng.uniform(*TAIL_S)))
     # The same draws with and without what cannot be foreseen: both takes have the same ticks

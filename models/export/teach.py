@@ -1,7 +1,7 @@
 """From somebody's own recordings to the bundle of a classifier that knows their gestures."""
 
 import tempfile
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -205,11 +205,11 @@ def _with_synthetic(
     own: list[Recording],
     split: Literal["train", "validation"],
     classes: tuple[str, ...],
-    taught: Collection[str],
+    taught: Sequence[str],
     lesson: Lesson,
 ) -> WindowSet:
     """Own windows, and virtual people who make the built-in gestures or are idle."""
-    made = synthetic_split(lesson.cache, split, TAKES, without=taught)
+    made = synthetic_split(lesson.cache, split, TAKES, synthetic.Mix(without=tuple(taught)))
     kept = [
         take for take in made if all(stretch.gesture in classes for stretch in take.stretches or ())
     ]

@@ -21,7 +21,7 @@ from models.data.labelled import (  # noqa: E402
     check_repetitions,
     read_gestures,
 )
-from models.data.synthetic import synthetic_recordings  # noqa: E402
+from models.data.synthetic import Mix, synthetic_recordings  # noqa: E402
 from models.data.windows import Recording, Stretch  # noqa: E402
 from models.export import teach as teaching  # noqa: E402
 from models.export.restore import restore_classifier  # noqa: E402
@@ -150,9 +150,11 @@ def test_a_frozen_lesson_changes_the_head_alone_and_the_server_takes_it(
 
 def test_idle_actions_that_are_taught_are_not_idle_any_more() -> None:
     made = synthetic_recordings(5, 40, ("v900",))
-    same = synthetic_recordings(5, 40, ("v900",), without=("no_such_action",))
+    same = synthetic_recordings(5, 40, ("v900",), Mix(without=("no_such_action",)))
     assert all(np.array_equal(a.observed, b.observed) for a, b in zip(made, same, strict=True))
-    without = synthetic_recordings(5, 40, ("v900",), without=("drink", "clap", "talk", "phone"))
+    without = synthetic_recordings(
+        5, 40, ("v900",), Mix(without=("drink", "clap", "talk", "phone"))
+    )
     assert any(
         a.observed.shape != b.observed.shape or not np.array_equal(a.observed, b.observed)
         for a, b in zip(made, without, strict=True)
