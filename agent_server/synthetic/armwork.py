@@ -61,14 +61,20 @@ def _push_forward(pen: Pen) -> None:
 def _throw(pen: Pen) -> None:
     """Over or under the shoulder."""
     spots: list[Vector] = [
-        (0.34, pen.uniform(-0.05, 0.2), pen.uniform(-0.05, 0.14)),
-        (0.22, pen.uniform(0.0, 0.22), -0.30),
+        (pen.uniform(0.26, 0.42), pen.uniform(-0.1, 0.24), pen.uniform(-0.05, 0.22)),
+        (0.24, pen.uniform(0.0, 0.28), -0.30),
         (0.03, -0.22, -0.50),
     ]
-    if pen.chance(0.3):
+    if pen.chance(0.25):
         spots = [(0.30, -0.48, 0.18), (0.18, -0.25, -0.42), (0.05, 0.08, -0.45)]
-    end = pen.through((pen.main,), spots, 0.5)
-    pen.lower((pen.main,), end)
+    end = pen.through((pen.main,), spots, pen.uniform(0.42, 0.65))
+    hands: Hands = (pen.main,)
+    if pen.chance(0.4):
+        # The other hand reaches ahead for balance.
+        ahead = pen.around((0.18, -0.38, -0.32), (0.06, 0.12, 0.12))
+        pen.reach(1 - pen.main, pen.start_s, pen.seconds(0.6), "chest", ahead)
+        hands = BOTH
+    pen.lower(hands, end)
     yaw = 16.0 * (1 if pen.main == 0 else -1)
     pen.turn("trunk", pen.start_s, 0.6, degrees(-3, 0, yaw))
     pen.turn("trunk", pen.start_s + 0.6, 0.4, degrees(12, 0, -yaw))
@@ -279,7 +285,7 @@ ARMWORK: Mapping[str, tuple[float, Writer]] = MappingProxyType(
         "sideways": (1.0, _sideways),
         "push_side": (2.4, _push_side),
         "push_forward": (1.0, _push_forward),
-        "throw": (2.4, _throw),
+        "throw": (2.8, _throw),
         "shoot": (1.3, _shoot),
         "punch": (1.2, _punch),
         "club": (1.0, _club),

@@ -12,8 +12,8 @@ from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees, fli
 from agent_server.synthetic.trajectory import ORIGIN, Vector
 
 Swivel = tuple[float, float]
-_FORWARD: Vector = (0.04, -0.05, -0.22)
-_SIDEWAYS: Vector = (0.28, -0.06, -0.14)
+_FORWARD: Vector = (0.04, -0.12, -0.21)
+_SIDEWAYS: Vector = (0.28, -0.11, -0.14)
 
 
 def _fidget(pen: Pen, hands: Hands, start_s: float, stop_s: float) -> None:
@@ -148,8 +148,8 @@ COVERING: Mapping[str, Mapping[str, tuple[float, Writer]]] = MappingProxyType(
             "mouth_one": (1.5, _mouth_one),
         },
         "bright": {
-            "eyes_both": (3.5, _eyes_both),
-            "eyes_one": (1.5, _eyes_one),
+            "eyes_both": (4.0, _eyes_both),
+            "eyes_one": (1.2, _eyes_one),
             "visor": (1.5, _visor),
             "visor_both": (0.7, _visor_both),
             "forearm": (1.0, _forearm),

@@ -49,7 +49,7 @@ def _fan_both(pen: Pen) -> None:
 
 def _neck(pen: Pen) -> None:
     """The open hand moves to and fro at the neck."""
-    _fan(pen, (pen.main,), (0.10, -0.27, -0.15), (0.035, 0.03, 0.03), (0.025, 0.06))
+    _fan(pen, (pen.main,), (0.11, -0.265, -0.17), (0.035, 0.03, 0.03), (0.035, 0.08))
 
 
 def _collar(pen: Pen) -> None:
@@ -58,7 +58,7 @@ def _collar(pen: Pen) -> None:
     place, spread = (0.06, -0.29, -0.15), (0.025, 0.03, 0.02)
     arrival = pen.bring(hands, "head", place, spread, (42.0, 14.0), fingers=(-0.8, 0.4, 0.3))
     release = arrival + max(1.0, pen.hold())
-    size = pen.uniform(0.02, 0.055) * pen.person.vigour
+    size = pen.uniform(0.028, 0.06) * pen.person.vigour
     frequency = pen.uniform(1.2, 3.0)
     for side in hands:
         pen.swing(side, arrival, release + 0.1, (0.2 * size, -0.2 * size, -size), frequency)

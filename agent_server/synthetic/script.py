@@ -19,7 +19,7 @@ HOMEWARDS: Vector = (0.07, 0.0, -0.13)
 """How far the way back to rest typically swings out."""
 SECONDS_PER_METRE = 0.36
 """Nobody moves a hand faster: a minimum-jerk peak of 1.875 / 0.36 = 5.2 m/s."""
-LOOSE_SHARE = 0.2
+LOOSE_SHARE = 0.15
 """How often both hands do not move as one: people's hands mostly start within 40 ms."""
 
 
@@ -204,7 +204,7 @@ class Pen:
             hand = self.around(fingers, 0.12)
             curve = self.around(path, 0.015)
             begin = start + (self._delay[side] if len(hands) > 1 else 0.0)
-            mine = duration * self.uniform(0.97, 1.03)
+            mine = duration * self.uniform(0.98, 1.02)
             if pause is not None:
                 stop = self.reach(side, begin, 0.7 * mine, "chest", pause, bow=curve)
                 begin = stop + stay

@@ -41,7 +41,7 @@ def _wave(
     """
     # Two hands that go far out on their way up would be on it to the ears.
     aside = pen.uniform(0.0, 0.28 if len(hands) == 1 else 0.1)
-    ahead = -pen.uniform(0.05, 0.2)
+    ahead = -pen.uniform(0.1, 0.24)
     arrival = pen.bring(
         hands,
         "chest",
@@ -84,7 +84,7 @@ def _wave(
 
 
 def _beside_head(pen: Pen) -> None:
-    place, spread = (0.33, 0.13, -0.28), (0.07, 0.07, 0.08)
+    place, spread = (0.32, 0.13, -0.29), (0.07, 0.07, 0.065)
     _wave(pen, (pen.main,), place, spread, (22.0, 14.0), size=(0.07, 0.21), rate=(1.3, 3.0))
 
 
@@ -103,7 +103,7 @@ def _wide(pen: Pen) -> None:
 
 
 def _high(pen: Pen) -> None:
-    place, spread = (0.28, 0.42, -0.16), (0.07, 0.05, 0.08)
+    place, spread = (0.28, 0.42, -0.18), (0.07, 0.05, 0.06)
     _wave(pen, (pen.main,), place, spread, (45.0, 16.0), size=(0.08, 0.25), rate=(0.9, 2.4))
 
 
