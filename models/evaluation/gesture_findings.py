@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from agent_server.domain.gesture import IDLE
 from models.evaluation.gesture_measures import GestureMeasures
 from models.evaluation.prediction_gain import HORIZONS_MS, LEVEL, Gain, Verdict, p_over_time
 from models.evaluation.readings import HELD, PREDICTED, TRUE
@@ -15,19 +16,22 @@ JUDGED_AT = 1
 
 
 def verdict_title(measured: GestureMeasures) -> str:
-    """Whether the prediction helps, in one sentence."""
-    gain = measured.gain
-    return (
-        f"The prediction {gain.verdict.value}: {100 * gain.accuracy[PREDICTED]:.1f} % of all "
-        f"windows are named right, {100 * gain.accuracy[HELD]:.1f} % with the last frame held"
-    )
+    """Whether the prediction helps to name gestures, and what it does to idle motion."""
+    parts = {"gestures": measured.gesture_gain, f"`{IDLE}`": measured.gains.get(IDLE)}
+    said = [
+        f"{gain.verdict.value} {name} ({100 * gain.accuracy[HELD]:.1f} to "
+        f"{100 * gain.accuracy[PREDICTED]:.1f} % right)"
+        for name, gain in parts.items()
+        if gain is not None
+    ]
+    return f"The prediction {' and '.join(said)}"
 
 
 def verdict_sentences(measured: GestureMeasures) -> list[str]:
     """Where the prediction helps, where not, and why not; names stand in backticks."""
     gain = measured.gain
     said = [
-        f"Over all {gain.windows:,} windows, 2 s predicted instead of the last frame held change "
+        f"Over all {gain.windows:,} windows, 2 s predicted in place of the last frame held change "
         f"accuracy by {signed(gain.points)} ({p_text(gain.p_value)}, McNemar's exact test on the "
         f"same windows). The true 2 s would change it by {signed(gain.room)}"
         + (
@@ -56,6 +60,8 @@ def _listed(measured: GestureMeasures, names: list[str]) -> str:
 
 def _over_time(measured: GestureMeasures) -> str:
     seen = measured.seen
+    if not seen.there.any():
+        return "The gestures are too short to compare one window of each at times after the onset."
     gain = 100 * (seen.share(PREDICTED) - seen.share(HELD))
     sure = p_over_time(seen) < LEVEL
     ahead = [f"{at:g}" for at in SECONDS[sure & (gain > 0)]]

@@ -9,6 +9,7 @@ import torch
 from numpy.typing import NDArray
 
 from agent_server.domain.arrays import Float32, Float64
+from agent_server.domain.gesture import IDLE
 from agent_server.domain.motion import RATE_HZ, SEEN_FRAMES
 from agent_server.errors import InvalidInput
 from models.data.windows import AMBIGUOUS, Recording, cut
@@ -82,6 +83,12 @@ class GestureMeasures:
         """What a predicted future adds over all windows."""
         return gain_of(self.right, np.ones(len(self.labels), np.bool_))
 
+    @property
+    def gesture_gain(self) -> Gain | None:
+        """What it adds over the windows of all gestures; None where there is none."""
+        shows = ~self.of(IDLE)
+        return gain_of(self.right, shows) if shows.any() else None
+
 
 def measure(
     classify: Classify,
@@ -98,12 +105,16 @@ def measure(
         classes: Names of the classifier's columns; ``idle`` is one of them.
 
     Raises:
-        InvalidInput: If no window can be judged.
+        InvalidInput: If no gesture is shown, or no window can be judged.
     """
+    if not any(recording.stretches for recording in recordings):
+        raise InvalidInput("no recording shows a gesture: give some that do, with labels")
     windows = cut(recordings, STRIDE, classes)
     judged = windows.take(((windows.labels != AMBIGUOUS) & ~windows.undecided).nonzero()[:, 0])
     if not len(judged):
-        raise InvalidInput("no window shows one labelled gesture: label the recordings")
+        raise InvalidInput(
+            "no window shows one class for long enough: give recordings of longer gestures"
+        )
     observed, clean = (part.numpy() for part in judged.frames(torch.arange(len(judged))))
     seen, true = observed[:, :SEEN_FRAMES], clean[:, SEEN_FRAMES:]
     expected = predict(seen)
@@ -194,6 +205,7 @@ def _reliability(measured: GestureMeasures) -> dict[str, Any]:
 def _prediction(measured: GestureMeasures) -> dict[str, Any]:
     return {
         **_gain(measured.gain),
+        "gestures": _gain(measured.gesture_gain) if measured.gesture_gain else None,
         "classes": {
             name: {
                 **_gain(gain),

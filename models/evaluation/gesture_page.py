@@ -58,23 +58,24 @@ def write_gesture_page(
         Path of the page.
 
     Raises:
-        InvalidInput: If no window can be judged.
+        InvalidInput: If no gesture is shown, or no window can be judged.
     """
     return show_measures(folder, title, measure(classify, predict, recordings, classes))
 
 
 def show_measures(folder: Path, title: str, measured: GestureMeasures) -> Path:
     """Write a page that needs nothing but itself, see ``write_gesture_page``."""
+    lasting = bool(measured.seen.there.any())  # else gestures are too short for a curve of time
     body = [
         _numbers(measured),
         plot_section(confusion_plot(measured)),
-        plot_section(seen_plot(measured)),
+        plot_section(seen_plot(measured)) if lasting else "",
         plot_section(live_plot(measured)),
         plot_section(settings_plot(measured)),
         plot_section(reliability_plot(measured)),
         plot_section(reject_plot(measured)),
         _verdict(measured),
-        plot_section(gain_plot(measured)),
+        plot_section(gain_plot(measured)) if lasting else "",
         plot_section(hands_plot(measured)),
     ]
     return write_page(

@@ -25,7 +25,7 @@ class Verdict(Enum):
 
     HELPS = "helps"
     HURTS = "hurts"
-    EVEN = "makes no difference beyond chance"
+    EVEN = "makes no sure difference to"
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,8 @@ from models.evaluation.prediction_gain import HORIZONS_MS, LEVEL, p_over_time
 from models.evaluation.readings import HELD, PREDICTED
 from models.evaluation.time_seen import SECONDS, TimeSeen
 
+NONE = "#b9bfc7"
+"""Ink of a gain of nothing."""
 FULL = 20
 """Points of a hundred at which a colour of the map is full, at least."""
 
@@ -35,17 +37,16 @@ def gain_plot(measured: GestureMeasures) -> Plot:
     made = figure(1.35 + 0.46 * len(rows))
     axes = made.add_subplot()
     top = max(FULL, float(np.nanmax(np.abs(values), initial=0)))
-    colours = LinearSegmentedColormap.from_list("gain", [BAD, "#ffffff", GOOD])
-    colours.set_bad("#f3f4f6")
+    colours = LinearSegmentedColormap.from_list("gain", [BAD, "#ffffff", GOOD], bad="#f3f4f6")
     axes.pcolormesh(values, cmap=colours, vmin=-top, vmax=top, edgecolors="white", linewidth=1.2)
     for row, column in np.ndindex(values.shape):
         value = float(values[row, column])
-        if not np.isnan(value) and round(value):
-            ink = "white" if abs(value) > 0.7 * top else INK
+        if not np.isnan(value):
+            ink = "white" if abs(value) > 0.7 * top else INK if round(value) else NONE
             axes.text(
                 column + 0.5,
                 row + 0.5,
-                f"{value:+.0f}".replace("-", "\u2212"),
+                f"{value:+.0f}".replace("-", "\u2212") if round(value) else "0",
                 color=ink,
                 ha="center",
                 va="center",
@@ -64,8 +65,8 @@ def gain_plot(measured: GestureMeasures) -> Plot:
         "Gain over time seen",
         _gain_finding(measured, names, values),
         "Points of a hundred by which 2 s predicted name more gestures right than the last frame "
-        "held: green where the prediction helps, orange where it hurts, no number where it changes "
-        f"nothing. Grey: fewer than {FEWEST} gestures are still going on.",
+        "held: green where the prediction helps, orange where it hurts. "
+        f"Grey: fewer than {FEWEST} gestures are still going on.",
         png(made),
     )
 
@@ -102,7 +103,7 @@ def hands_plot(measured: GestureMeasures) -> Plot:
         for reading in (PREDICTED, HELD)
     )
     made = figure(1.3 + 0.4 * len(names))
-    panels = list(made.subplots(1, len(HORIZONS_MS), sharey=True, squeeze=False)[0])
+    panels = list(made.subplots(1, len(HORIZONS_MS), sharex=True, sharey=True, squeeze=False)[0])
     for at, (axes, ms) in enumerate(zip(panels, HORIZONS_MS, strict=True)):
         plain_axes(axes, "distance from the true hands, mm", "")
         axes.grid(axis="y", visible=False)
@@ -135,12 +136,12 @@ def hands_plot(measured: GestureMeasures) -> Plot:
             markeredgecolor="white",
             label="predicted",
         )
-        axes.set_xlim(0, 1.12 * max(predicted[:, at].max(), held[:, at].max()))
         axes.set_ylim(len(names) - 0.4, -0.6)
         axes.xaxis.set_major_locator(MaxNLocator(5))
         axes.set_title(
             f"{duration(ms)} ahead", loc="left", fontsize=10.5, fontweight="bold", color=INK, pad=10
         )
+    panels[0].set_xlim(0, 1.06 * max(predicted.max(), held.max()))
     panels[0].set_yticks(range(len(names)), names)
     panels[0].tick_params(axis="y", colors=INK, labelsize=10.5)
     legend = panels[0].legend(
@@ -159,7 +160,8 @@ def hands_plot(measured: GestureMeasures) -> Plot:
 
 
 def _hands_finding(names: list[str], predicted: Float64, held: Float64) -> str:
-    ratio = predicted / held
+    # Hands that never move are held without an error: no prediction comes nearer.
+    ratio = np.divide(predicted, held, out=np.ones_like(predicted), where=held > 0)
     best, worst = int(ratio.argmin()), int(ratio.argmax())
     nearer = int((ratio < 1).sum())
     said = f"{duration(HORIZONS_MS[-2])} ahead, predicted hands are nearer the truth than held ones"

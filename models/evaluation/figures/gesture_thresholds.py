@@ -86,13 +86,12 @@ def _trade(
         axes.annotate(
             "ships",
             (median, value(mine)),
-            xytext=(0, -20),
+            xytext=(10, 9),
             textcoords="offset points",
-            ha="center",
+            ha="left",
             color=text_colour(BAD),
             fontsize=10,
             fontweight="bold",
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1},
         )
 
 

@@ -63,7 +63,8 @@ def seen_plot(measured: GestureMeasures) -> Plot:
         axes.plot(
             SECONDS[:half], share[:half], color=colour, linewidth=width, linestyle=LINES[reading]
         )
-        ends.append((SHORT[reading], float(share[~np.isnan(share)][-1]), colour))
+        if not np.isnan(share).all():
+            ends.append((SHORT[reading], float(share[~np.isnan(share)][-1]), colour))
     enough = _enough(seen)
     if enough is not None:
         axes.axhline(100 * enough, color=QUIET, linewidth=0.9, linestyle=(0, (2, 3)))
