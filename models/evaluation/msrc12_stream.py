@@ -28,10 +28,9 @@ from models.data.msrc12 import (
     tagged_recordings,
 )
 from models.data.windows import Recording, cut
-from models.evaluation.forecasters import SERVER_BUNDLE
 from models.evaluation.gestures import HOP_FRAMES, decisions, sliding_seen
-from models.evaluation.msrc12_windows import CLASSIFIER
-from models.evaluation.rows import Bundled, Held
+from models.evaluation.msrc12_windows import CLASSIFIER, fold_predictors
+from models.evaluation.rows import Held
 from models.interformer.config import NetworkConfig, TrainConfig
 from models.interformer.train import completed, load_classifier, train
 from models.training.run import INFO, Run
@@ -159,12 +158,12 @@ def msrc12_stream_report(data: Path, folder: Path, seed: int = 0) -> dict[str, A
         seed: Of every training.
     """
     torch.set_num_threads(1)
-    expected = Bundled(SERVER_BUNDLE)
     streams = read_streams(data / "msrc12")
     held: dict[str, list[Watched]] = {name: [] for name in CONFIGS}
     tested: dict[str, list[Watched]] = {name: [] for name in CONFIGS}
     for number, fold in enumerate(folds([one.subject for one in streams])):
         place = folder / f"rotation_{number}"
+        expected = fold_predictors(streams, fold, place, seed)["ma_wgan"]
         for name, config in CONFIGS.items():
             predictor = expected if name == "predicted" else Held()
             network = _trained(config, streams, fold, place / f"stream_{name}", predictor, seed)

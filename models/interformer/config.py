@@ -79,6 +79,8 @@ class TrainConfig:
         true_future: Share of predicted futures that are replaced by true frames, and ...
         last_frame: ... by the last seen frame, as the server does when it has no predictor.
         idle: Share of idle windows in a batch, where idle is a class.
+        mixup: Windows are blended with others of the batch, and their labels alike, by shares
+            from Beta(mixup, mixup); 0 for none (Zhang et al., ICLR 2018).
         augmentation: How windows are varied.
         ema: Decay of the averaged weights.
         validate_every: Updates between two validations.
@@ -95,6 +97,7 @@ class TrainConfig:
     true_future: float = 0.2
     last_frame: float = 0.1
     idle: float = 0.65
+    mixup: float = 0.0
     augmentation: Augmentation = AUGMENTATION
     ema: float = 0.998
     validate_every: int = 500

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
 import torch.nn.functional as F
 from torch import nn
@@ -168,14 +169,35 @@ class Trainer:
             clip=LARGEST_GRADIENT,
         )
 
-    def step(self, motion: torch.Tensor, labels: torch.Tensor) -> dict[str, float]:
+    def step(
+        self, motion: torch.Tensor, labels: torch.Tensor, generator: torch.Generator
+    ) -> dict[str, float]:
         """One update; gives loss and accuracy of the batch."""
+        config = self.config
+        shares = torch.ones(len(motion), device=motion.device)
+        other = torch.arange(len(motion), device=motion.device)
+        if config.mixup:
+            shares = mixing_shares(len(motion), config.mixup, generator).to(motion.device)
+            other = torch.randperm(len(motion), generator=generator).to(motion.device)
+            blend = shares[:, None, None, None]
+            motion = blend * motion + (1 - blend) * motion[other]
         self.network.train()
         logits = self.network(motion)
-        loss = F.cross_entropy(logits, labels, label_smoothing=self.config.smoothing)
+        mine, its = (
+            F.cross_entropy(logits, each, reduction="none", label_smoothing=config.smoothing)
+            for each in (labels, labels[other])
+        )
+        loss = (shares * mine + (1 - shares) * its).mean()
         self.updater.apply(loss)
         accuracy = (logits.argmax(-1) == labels).float().mean()
         return {"loss": float(loss.detach()), "accuracy": float(accuracy)}
+
+
+def mixing_shares(count: int, alpha: float, generator: torch.Generator) -> torch.Tensor:
+    """Shares of the window whose label counts more, Beta(alpha, alpha) folded to [0.5, 1]."""
+    seed = int(torch.randint(2**31, (1,), generator=generator))
+    drawn = np.random.default_rng(seed).beta(alpha, alpha, count)
+    return torch.from_numpy(np.maximum(drawn, 1 - drawn)).float()
 
 
 class ClassifierLearner:
@@ -204,7 +226,8 @@ class ClassifierLearner:
         undecided = training.undecided[index].to(self.device)
         observed = observed.to(self.device)
         motion = complete(self.predictor, observed, config, undecided, generator)
-        return self.trainer.step(motion, training.labels[index].to(self.device))
+        labels = training.labels[index].to(self.device)
+        return self.trainer.step(motion, labels, generator)
 
     def validate(self) -> dict[str, float]:
         """Balanced loss, which is the score, and balanced accuracy."""

@@ -76,9 +76,14 @@ def train(config: TrainConfig, run: Run, data: Path, cache: Path) -> None:
         data: Folder that holds the set folders.
         cache: Folder of generated recordings.
     """
-    torch.manual_seed(run.info["seed"])
     seen, sequences = config.network.seen, config.synthetic_sequences
     source = make_source(config.data, seen, data, cache, sequences=sequences, vary=False)
+    train_on(config, run, source)
+
+
+def train_on(config: TrainConfig, run: Run, source: Source) -> None:
+    """The same, on windows of any source."""
+    torch.manual_seed(run.info["seed"])
     fit("simlpe", SiMlpeLearner(config, source), run, config.steps, config.validate_every)
 
 

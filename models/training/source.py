@@ -14,6 +14,7 @@ from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import HALF_QUARTER_TURN, Augmentation, WindowSet, augment, cut
 
 AUGMENTATION = Augmentation(yaw=HALF_QUARTER_TURN, scale=0.1, noise_m=0.005, drop=0.05)
+VARIED = Augmentation(yaw=0.35, scale=0.1, noise_m=0.0, drop=0.0)
 SYNTHETIC_SHARE = 0.6
 VALIDATION_STRIDE = 40
 SCALE = 0.05
@@ -72,6 +73,30 @@ class SensorSource:
         captured = reverse_some(captured, generator)
         observed, clean = torch.cat([observed, captured]), torch.cat([clean, captured])
         return split(*augment(observed, clean, AUGMENTATION, generator))
+
+
+@dataclass(frozen=True, slots=True)
+class TaggedSource:
+    """Windows of recordings of which some matter more: half of a batch are those.
+
+    Attributes:
+        windows: All of them.
+        tagged: Those that matter.
+        validation: Windows by name.
+        layout: The nine core joints.
+    """
+
+    windows: WindowSet
+    tagged: WindowSet
+    validation: dict[str, Windows]
+    layout: Layout = CORE
+
+    def draw(self, count: int, generator: torch.Generator) -> Windows:
+        """An augmented batch."""
+        everywhere = _some(self.windows, count - count // 2, generator)
+        tagged = _some(self.tagged, count // 2, generator)
+        observed, clean = (torch.cat(both) for both in zip(everywhere, tagged, strict=True))
+        return split(*augment(observed, clean, VARIED, generator))
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from models.interformer.train import (  # noqa: E402
     completed,
     hold_last,
     load_classifier,
+    mixing_shares,
     train,
 )
 from models.training.run import Run  # noqa: E402
@@ -132,8 +133,21 @@ def test_a_few_windows_are_learnt_by_heart() -> None:
     trainer = Trainer(TrainConfig(network=SMALL, steps=250, learning_rate=3e-3), CPU)
     motion = windows.frames(torch.arange(len(windows)))[0]
     for _ in range(60):
-        terms = trainer.step(motion, windows.labels)
+        terms = trainer.step(motion, windows.labels, torch.Generator())
     assert terms["accuracy"] > 0.9
+
+
+def test_windows_are_mixed_by_the_larger_half_of_a_beta_distribution() -> None:
+    generator = torch.Generator().manual_seed(0)
+    shares = mixing_shares(4000, 0.3, generator)
+    assert 0.5 <= float(shares.min()) < 0.55
+    assert float(shares.max()) == pytest.approx(1.0, abs=1e-3)
+    assert float(shares.mean()) == pytest.approx(0.866, abs=0.02)
+    assert not torch.equal(shares, mixing_shares(4000, 0.3, generator))
+    trainer = Trainer(TrainConfig(network=SMALL, mixup=0.3), CPU)
+    windows = labelled(2)
+    motion = windows.all()
+    assert trainer.step(motion, windows.labels, generator)["loss"] > 0
 
 
 def test_a_run_leaves_a_classifier_that_can_be_loaded(tmp_path: Path) -> None:
