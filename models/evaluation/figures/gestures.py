@@ -93,6 +93,10 @@ def confusion_plot(measured: GestureMeasures) -> Plot:
     axes.xaxis.tick_top()
     axes.xaxis.set_label_position("top")
     axes.set_xticks(range(len(names)), names)
+    if small:
+        axes.tick_params(axis="x", labelrotation=35)
+        for label in axes.get_xticklabels():
+            label.set(ha="left", rotation_mode="anchor")
     axes.set_yticks(range(len(rows)), [names[row] for row in rows])
     axes.set_xlabel("named as, share and number of windows", color=QUIET, fontsize=10, labelpad=10)
     axes.set_ylabel("what is shown", color=QUIET, fontsize=10, labelpad=10)

@@ -6,15 +6,16 @@ from dataclasses import dataclass, replace
 from html import unescape
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 pytest.importorskip("torch", reason="needs the train extra")
 
 from matplotlib import pyplot
+from typer.testing import CliRunner
 
 from agent_server.domain.gesture import IDLE
 from agent_server.errors import InvalidInput
+from models.__main__ import app
 from models.data.windows import Recording, Stretch
 from models.evaluation.figures.gestures import percent
 from models.evaluation.gesture_findings import verdict_sentences, verdict_title
@@ -198,33 +199,36 @@ def test_the_page_stands_alone_and_every_picture_is_described(page: Page) -> Non
     assert pyplot.get_fignums() == []
 
 
-def test_titles_and_names_are_escaped(
-    page: Page, measured: GestureMeasures, tmp_path: Path
-) -> None:
+def test_titles_are_escaped(page: Page) -> None:
     assert "a<b>" not in page.markup
     assert "<title>SYNTHETIC benchmark: a&lt;b&gt; on virtual people</title>" in page.markup
-    odd = replace(
-        measured,
-        classes=("<wave>", "point", IDLE),
-        seen=replace(
-            measured.seen, gestures=np.char.replace(measured.seen.gestures, "wave", "<wave>")
-        ),
-    )
-    assert "<wave>" not in show_measures(tmp_path, "Odd", odd).read_text(encoding="utf-8")
 
 
-def test_gestures_too_short_for_a_curve_leave_it_out(tmp_path: Path) -> None:
+def test_gestures_too_short_for_a_curve_leave_it_out_whatever_they_are_called(
+    tmp_path: Path,
+) -> None:
     """A stretch of 0.68 s shows the gesture for no longer than it takes to count."""
 
     def briefly(gesture: str) -> Recording:
         whole = raised(gesture)
-        return Recording(whole.observed, whole.clean, (Stretch(gesture, 70, 86),), "v01")
+        return Recording(whole.observed, whole.clean, (Stretch(f"<{gesture}>", 70, 86),), "v01")
 
     takes = [briefly("wave"), briefly("point"), resting()]
-    written = write_gesture_page(tmp_path, "Brief", by_last_frame, moving_on, takes, CLASSES)
+    classes = ("<wave>", "<point>", IDLE)
+    written = write_gesture_page(tmp_path, "Brief", by_last_frame, moving_on, takes, classes)
     page = Page(written.read_text(encoding="utf-8"))
     assert page.markup.count("<figure>") == 6
     assert "too short to compare" in page.markup
+    assert "<wave>" not in page.markup
+    assert "<code>&lt;wave&gt;</code>" in page.markup
+
+
+def test_only_the_synthetic_benchmark_has_a_page(tmp_path: Path) -> None:
+    words = ["evaluate", "gestures", "--data", ".", "--benchmark", "live", "--report", tmp_path]
+    result = CliRunner().invoke(app, [str(word) for word in words])
+    assert result.exit_code == 2
+    assert "--benchmark synthetic only" in re.sub(r"[\u2502\s]+", " ", result.output)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_recordings_without_gestures_are_refused() -> None:
