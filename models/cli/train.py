@@ -7,7 +7,7 @@ import typer
 
 from models.cli.options import CACHE, CacheOption, DataOption, OutOption, SeedOption, configured
 from models.data.splits import cmu_split, synthetic_split
-from models.data.windows import cut, join
+from models.data.windows import TRAINED, cut, join
 from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
 from models.interformer.train import train as train_classifier
 from models.ma_wgan.config import CONFIGS as MA_WGAN_CONFIGS
@@ -82,7 +82,7 @@ def train_interformer(
     run = Run(out, chosen, seed, command, resume)
     training = join(
         [
-            cut(synthetic_split(cache, "train", chosen.synthetic_sequences)),
+            cut(synthetic_split(cache, "train", chosen.synthetic_sequences), margins=TRAINED),
             cut(cmu_split(data, "train")),
         ]
     )

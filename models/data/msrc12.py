@@ -117,7 +117,7 @@ def tag_windows(
         frames,
         torch.tensor(starts),
         torch.tensor(labels),
-        torch.zeros(len(starts), dtype=torch.bool),
+        torch.tensor(labels),
         TAGS,
     )
 

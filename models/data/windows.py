@@ -16,10 +16,8 @@ from models.data.layouts import CORE
 
 AMBIGUOUS = -1
 """Label of a window that is left out of training and of accuracies."""
-STARTED_FRAMES = 8
-"""A gesture counts from this many frames (0.32 s) after its onset; before, it is ambiguous."""
-LEAVING_FRAMES = 10
-"""It stops counting this many frames (0.4 s) before its offset: the hands are mostly back."""
+SHOWN_FRAMES = 20
+"""A whole window shows a gesture that starts at least this many frames (0.8 s) before its end."""
 MIRROR = list(CORE.mirror)
 
 
@@ -56,35 +54,69 @@ class Recording:
     subject: str
 
 
-def window_labels(
-    stretches: Sequence[Stretch] | None, classes: Sequence[str], last_seen: NDArray[np.int64]
-) -> NDArray[np.int64]:
-    """Index in ``classes`` of the windows whose last seen frame is given, or AMBIGUOUS.
+@dataclass(frozen=True, slots=True)
+class Margins:
+    """How much of a gesture has to be seen before it counts; in between, windows are ambiguous.
 
-    A gesture is going on from 8 frames after its onset until 10 frames before its offset.
-    Outside onset to offset it is idle; the two margins are ambiguous.
+    Attributes:
+        started: Frames from the onset on: the hands are on their way.
+        leaving: Frames before the offset: the hands are mostly back.
+    """
+
+    started: int
+    leaving: int
+
+
+JUDGED = Margins(started=8, leaving=10)
+"""Accuracies are of windows that show a gesture for 0.32 s at least, and not its last 0.4 s."""
+TRAINED = Margins(started=4, leaving=8)
+"""Training begins earlier, so that the decision stage has something to go by in time."""
+
+
+def window_labels(
+    stretches: Sequence[Stretch] | None,
+    classes: Sequence[str],
+    last_seen: NDArray[np.int64],
+    margins: Margins = JUDGED,
+) -> NDArray[np.int64]:
+    """What the seen second says: index in ``classes``, or AMBIGUOUS.
+
+    Args:
+        stretches: Gestures of the recording, or None if nothing is known.
+        classes: Names of the labels.
+        last_seen: Shape (N,), last seen frame of each window.
+        margins: When a gesture counts. Outside onset to offset it is idle.
     """
     if stretches is None:
         return np.full(len(last_seen), AMBIGUOUS)
     labels = np.full(len(last_seen), classes.index(IDLE))
     for stretch in stretches:
         inside = (last_seen >= stretch.onset) & (last_seen < stretch.offset)
-        shown = inside & (last_seen >= stretch.onset + STARTED_FRAMES)
-        shown &= last_seen <= stretch.offset - LEAVING_FRAMES
+        shown = inside & (last_seen >= stretch.onset + margins.started)
+        shown &= last_seen <= stretch.offset - margins.leaving
         labels[inside] = AMBIGUOUS
         labels[shown] = classes.index(stretch.gesture)
     return labels
 
 
-def future_onsets(
-    stretches: Sequence[Stretch] | None, last_seen: NDArray[np.int64]
-) -> NDArray[np.bool_]:
-    """Whether a gesture starts between the last seen frame and the end of the window."""
-    ahead = [
-        (stretch.onset > last_seen) & (stretch.onset < last_seen + PREDICTED_FRAMES)
-        for stretch in stretches or ()
-    ]
-    return np.any(ahead, axis=0) if ahead else np.zeros(len(last_seen), np.bool_)
+def whole_labels(
+    stretches: Sequence[Stretch] | None,
+    classes: Sequence[str],
+    last_seen: NDArray[np.int64],
+    margins: Margins = JUDGED,
+) -> NDArray[np.int64]:
+    """What all 3 s say: a gesture counts too if it starts in the last 2 s but for 0.8 s."""
+    if stretches is None:
+        return np.full(len(last_seen), AMBIGUOUS)
+    labels = np.full(len(last_seen), classes.index(IDLE))
+    end = last_seen + PREDICTED_FRAMES
+    for stretch in stretches:
+        inside = (end >= stretch.onset) & (last_seen < stretch.offset)
+        shown = inside & (end >= stretch.onset + SHOWN_FRAMES)
+        shown &= last_seen <= stretch.offset - margins.leaving
+        labels[inside] = AMBIGUOUS
+        labels[shown] = classes.index(stretch.gesture)
+    return labels
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +127,8 @@ class WindowSet:
         observed: Shape (F, 9, 3), all recordings one after the other.
         clean: Shape (F, 9, 3).
         starts: Shape (N,), first frame of each window.
-        labels: Shape (N,), index in ``classes`` or AMBIGUOUS.
-        undecided: Shape (N,), whether the future shows a gesture that the label does not say.
+        labels: Shape (N,), what the seen second says: index in ``classes`` or AMBIGUOUS.
+        whole: Shape (N,), what all 3 s say.
         classes: Names of the labels.
     """
 
@@ -104,7 +136,7 @@ class WindowSet:
     clean: torch.Tensor
     starts: torch.Tensor
     labels: torch.Tensor
-    undecided: torch.Tensor
+    whole: torch.Tensor
     classes: tuple[str, ...]
 
     def __len__(self) -> int:
@@ -117,9 +149,14 @@ class WindowSet:
             self.clean,
             self.starts[index],
             self.labels[index],
-            self.undecided[index],
+            self.whole[index],
             self.classes,
         )
+
+    def judged(self) -> "WindowSet":
+        """Windows of which the seen second and the whole say the same."""
+        clear = (self.labels != AMBIGUOUS) & (self.labels == self.whole)
+        return self.take(clear.nonzero()[:, 0])
 
     def frames(self, index: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
         """Observed and clean windows, both (B, 75, 9, 3), normalised alike."""
@@ -134,9 +171,18 @@ class WindowSet:
 
 
 def cut(
-    recordings: Iterable[Recording], stride: int = 1, classes: tuple[str, ...] = GESTURES
+    recordings: Iterable[Recording],
+    stride: int = 1,
+    classes: tuple[str, ...] = GESTURES,
+    margins: Margins = JUDGED,
 ) -> WindowSet:
     """Every window of 75 frames that fits into a recording, ``stride`` frames apart.
+
+    Args:
+        recordings: Where from.
+        stride: Frames between the starts of two windows.
+        classes: Names of the labels.
+        margins: When a gesture counts.
 
     Raises:
         InvalidInput: If no recording is long enough.
@@ -145,15 +191,15 @@ def cut(
     clean: list[NDArray[np.float32]] = []
     starts: list[NDArray[np.int64]] = []
     labels: list[NDArray[np.int64]] = []
-    undecided: list[NDArray[np.bool_]] = []
+    whole: list[NDArray[np.int64]] = []
     base = 0
     for recording in recordings:
         frames = len(recording.observed)
         first = np.arange(0, frames - CLASSIFIED_FRAMES + 1, stride)
         last = first + SEEN_FRAMES - 1
         starts.append(base + first)
-        labels.append(window_labels(recording.stretches, classes, last))
-        undecided.append(future_onsets(recording.stretches, last))
+        labels.append(window_labels(recording.stretches, classes, last, margins))
+        whole.append(whole_labels(recording.stretches, classes, last, margins))
         observed.append(recording.observed)
         clean.append(recording.clean)
         base += frames
@@ -164,7 +210,7 @@ def cut(
         torch.from_numpy(np.concatenate(clean)).float(),
         torch.from_numpy(np.concatenate(starts)),
         torch.from_numpy(np.concatenate(labels)),
-        torch.from_numpy(np.concatenate(undecided)),
+        torch.from_numpy(np.concatenate(whole)),
         classes,
     )
 
@@ -177,7 +223,7 @@ def join(sets: Sequence[WindowSet]) -> WindowSet:
         torch.cat([one.clean for one in sets]),
         torch.cat([one.starts + base for one, base in zip(sets, bases, strict=False)]),
         torch.cat([one.labels for one in sets]),
-        torch.cat([one.undecided for one in sets]),
+        torch.cat([one.whole for one in sets]),
         sets[0].classes,
     )
 

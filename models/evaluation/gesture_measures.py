@@ -12,7 +12,7 @@ from agent_server.domain.arrays import Float32, Float64
 from agent_server.domain.gesture import IDLE
 from agent_server.domain.motion import RATE_HZ, SEEN_FRAMES
 from agent_server.errors import InvalidInput
-from models.data.windows import AMBIGUOUS, Recording, cut
+from models.data.windows import Recording, cut
 from models.evaluation.calibration_curves import reliability, risk_coverage
 from models.evaluation.decision_times import Answers, Setting, answers, live_streams, sweep
 from models.evaluation.gestures import Classify, Predict, hold_last, scores
@@ -110,7 +110,7 @@ def measure(
     if not any(recording.stretches for recording in recordings):
         raise InvalidInput("no recording shows a gesture: give some that do, with labels")
     windows = cut(recordings, STRIDE, classes)
-    judged = windows.take(((windows.labels != AMBIGUOUS) & ~windows.undecided).nonzero()[:, 0])
+    judged = windows.judged()
     if not len(judged):
         raise InvalidInput(
             "no window shows one class for long enough: give recordings of longer gestures"

@@ -12,7 +12,7 @@ from agent_server.domain.gesture import GESTURES, HELLO, IDLE, Classification
 from agent_server.domain.motion import FRAME_NS, RATE_HZ, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.stages.decide import GestureTracker, Phase
-from models.data.windows import AMBIGUOUS, Recording, Stretch, WindowSet
+from models.data.windows import Recording, Stretch, WindowSet
 
 HOP_FRAMES = WindowSettings().hop
 DECIDE = DecideSettings()
@@ -49,9 +49,9 @@ def labelled_windows(windows: WindowSet) -> tuple[Float32, Float32, np.ndarray]:
 
     These have a label, and their future shows nothing that the label does not say.
     """
-    index = ((windows.labels != AMBIGUOUS) & ~windows.undecided).nonzero()[:, 0]
-    motion = windows.frames(index)[0].numpy()
-    return motion[:, :SEEN_FRAMES], motion, windows.labels[index].numpy()
+    judged = windows.judged()
+    motion = judged.all().numpy()
+    return motion[:, :SEEN_FRAMES], motion, judged.labels.numpy()
 
 
 def scores(

@@ -97,6 +97,6 @@ def _windows(seed: int, count: int, people: tuple[str, ...]) -> WindowSet:
         torch.from_numpy(np.concatenate([take.clean for take in takes])),
         torch.tensor(starts),
         torch.tensor(labels),
-        torch.zeros(len(starts), dtype=torch.bool),
+        torch.tensor(labels),
         GESTURES,
     )

@@ -17,7 +17,7 @@ from models.data import synthetic
 from models.data.labelled import GestureSet, check_repetitions
 from models.data.splits import HELD_OUT, synthetic_split
 from models.data.streams import idle_streams
-from models.data.windows import AMBIGUOUS, Recording, WindowSet, cut, join
+from models.data.windows import AMBIGUOUS, JUDGED, TRAINED, Recording, WindowSet, cut, join
 from models.evaluation.gestures import (
     evaluate_decisions,
     false_reactions,
@@ -46,7 +46,7 @@ STRIDE = 5
 IDLE_MINUTES = 10
 IDLE_SEED = 902
 LICENCE = "that of the recordings it was trained on"
-CONFIG = TrainConfig(steps=2_500, idle=0.5, last_frame=0.1, true_future=0.1, validate_every=250)
+CONFIG = TrainConfig(steps=2_500, idle=0.5, validate_every=250)
 FROZEN_STEPS = 1_500
 
 
@@ -213,8 +213,13 @@ def _with_synthetic(
     kept = [
         take for take in made if all(stretch.gesture in classes for stretch in take.stretches or ())
     ]
-    stride = 1 if split == "train" else STRIDE
-    return join([cut(own, stride, classes), cut(kept, SYNTHETIC_STRIDE * stride, classes)])
+    stride, margins = (1, TRAINED) if split == "train" else (STRIDE, JUDGED)
+    return join(
+        [
+            cut(own, stride, classes, margins),
+            cut(kept, SYNTHETIC_STRIDE * stride, classes, margins),
+        ]
+    )
 
 
 def _started(lesson: Lesson, config: TrainConfig, classes: tuple[str, ...]) -> Classifier | None:

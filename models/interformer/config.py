@@ -76,8 +76,10 @@ class TrainConfig:
         learning_rate: Peak rate (AdamW, warm-up, then a cosine to zero).
         weight_decay: Of all weights.
         smoothing: Share of the label that is spread over all classes.
-        true_future: Share of predicted futures that are replaced by true frames, and ...
-        last_frame: ... by the last seen frame, as the server does when it has no predictor.
+        true_future: Share of windows that end in true frames all the same, and have the label
+            of all 3 s.
+        last_frame: Share of the others that are completed by the last seen frame, as the server
+            does when it has no predictor.
         idle: Share of idle windows in a batch, where idle is a class.
         mixup: Windows are blended with others of the batch, and their labels alike, by shares
             from Beta(mixup, mixup); 0 for none (Zhang et al., ICLR 2018).
@@ -94,7 +96,7 @@ class TrainConfig:
     learning_rate: float = 1e-3
     weight_decay: float = 0.02
     smoothing: float = 0.02
-    true_future: float = 0.2
+    true_future: float = 0.3
     last_frame: float = 0.1
     idle: float = 0.65
     mixup: float = 0.0
@@ -104,11 +106,15 @@ class TrainConfig:
     synthetic_sequences: int = 6_000
 
     def __post_init__(self) -> None:
-        if not 0 <= self.true_future <= 1 - self.last_frame <= 1:
-            raise ConfigError(
-                f"true_future is {self.true_future} and last_frame {self.last_frame}: choose "
-                "shares that add up to at most 1"
-            )
+        for name in ("true_future", "last_frame", "idle"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise ConfigError(f"{name} is {getattr(self, name)}: a share lies in 0..1")
+
+    @property
+    def true_windows(self) -> int:
+        """Windows of a batch that end in true frames."""
+        shares = {"true": 1.0, "held": 0.0, "predicted": self.true_future}
+        return round(self.batch * shares[self.futures])
 
 
 CONFIGS: dict[str, TrainConfig] = {"server": TrainConfig()}

@@ -38,28 +38,30 @@ class Pools:
     """Windows by label, so that a batch can be balanced.
 
     Attributes:
-        windows: All of them.
         by_class: Index of the windows of each class.
         idle: Which class is idle, or None.
     """
 
-    windows: WindowSet
     by_class: tuple[torch.Tensor, ...]
     idle: int | None
 
     @classmethod
-    def of(cls, windows: WindowSet) -> "Pools":
+    def of(cls, windows: WindowSet, labels: torch.Tensor) -> "Pools":
         """Sort windows by label; ambiguous ones are left out.
+
+        Args:
+            windows: The windows.
+            labels: Shape (N,), what the seen second says of them, or all 3 s.
 
         Raises:
             InvalidInput: If a class has no window.
         """
         classes = windows.classes
-        by_class = tuple((windows.labels == c).nonzero()[:, 0] for c in range(len(classes)))
+        by_class = tuple((labels == c).nonzero()[:, 0] for c in range(len(classes)))
         for name, pool in zip(classes, by_class, strict=True):
             if not len(pool):
                 raise InvalidInput(f"no training window shows {name}: give more sequences")
-        return cls(windows, by_class, classes.index(IDLE) if IDLE in classes else None)
+        return cls(by_class, classes.index(IDLE) if IDLE in classes else None)
 
     def draw(self, batch: int, idle: float, generator: torch.Generator) -> torch.Tensor:
         """Indices of a batch with a share of ``idle``, if it is a class, and all others alike."""
@@ -75,41 +77,18 @@ class Pools:
             self.by_class[c][int(s * len(self.by_class[c]))]
             for c, s in zip(classes.tolist(), spot.tolist(), strict=True)
         ]
-        return torch.stack(picked)
-
-
-def complete(
-    predictor: Predict,
-    observed: torch.Tensor,
-    config: TrainConfig,
-    undecided: torch.Tensor,
-    generator: torch.Generator,
-) -> torch.Tensor:
-    """Windows as the classifier gets them in training: seen frames, then what it is to expect.
-
-    Args:
-        predictor: Frozen; seen (B, 25, 9, 3) -> future (B, 50, 9, 3).
-        observed: Shape (B, 75, 9, 3).
-        config: Its kind of future, and the shares of true and held ones among predicted ones.
-        undecided: Shape (B,), whether the true future shows what the label does not say.
-        generator: Where the choice comes from.
-    """
-    if config.futures != "predicted":
-        return completed(predictor, observed, config)
-    seen = observed[:, :SEEN_FRAMES]
-    with torch.no_grad():
-        predicted = predictor(seen)
-    draw = torch.rand(len(observed), generator=generator).to(observed.device)
-    keep = (draw < config.true_future) & ~undecided
-    hold = draw >= 1 - config.last_frame
-    future = torch.where(keep[:, None, None, None], observed[:, SEEN_FRAMES:], predicted)
-    future = torch.where(hold[:, None, None, None], hold_last(seen), future)
-    return torch.cat([seen, future], dim=1)[:, : config.network.frames]
+        return torch.stack(picked) if picked else torch.empty(0, dtype=torch.long)
 
 
 @torch.no_grad()
 def completed(predictor: Predict, observed: torch.Tensor, config: TrainConfig) -> torch.Tensor:
-    """Windows as the classifier gets them in use, cut to the frames that it takes."""
+    """Windows as ``config`` has them completed, cut to the frames that the network takes.
+
+    Args:
+        predictor: Frozen; seen (B, 25, 9, 3) -> future (B, 50, 9, 3).
+        observed: Shape (B, 75, 9, 3).
+        config: Its kind of future and its frames.
+    """
     seen = observed[:, :SEEN_FRAMES]
     match config.futures:
         case "true":
@@ -214,20 +193,33 @@ class ClassifierLearner:
         self.config, self.training = config, training
         self.device = training_device()
         self.predictor = predictor.to(self.device).eval().requires_grad_(False)
-        self.pools = Pools.of(training)
+        self.by_seen = Pools.of(training, training.labels)
+        self.by_whole = Pools.of(training, training.whole)
         self.validation = validation.take((validation.labels != AMBIGUOUS).nonzero()[:, 0])
         self.trainer = Trainer(config, self.device, network)
 
     def step(self, generator: torch.Generator) -> dict[str, float]:
-        """One update on windows of which some are undecided."""
+        """One update; windows that end in true frames have the label of all 3 s."""
         config, training = self.config, self.training
-        index = self.pools.draw(config.batch, config.idle, generator)
-        observed, _ = augment(*training.frames(index), config.augmentation, generator)
-        undecided = training.undecided[index].to(self.device)
-        observed = observed.to(self.device)
-        motion = complete(self.predictor, observed, config, undecided, generator)
-        labels = training.labels[index].to(self.device)
-        return self.trainer.step(motion, labels, generator)
+        true = config.true_windows
+        whole = self.by_whole.draw(true, config.idle, generator)
+        seen = self.by_seen.draw(config.batch - true, config.idle, generator)
+        labels = torch.cat([training.whole[whole], training.labels[seen]])
+        frames = training.frames(torch.cat([whole, seen]))
+        observed = augment(*frames, config.augmentation, generator)[0].to(self.device)
+        expected = self._expected(observed[true:, :SEEN_FRAMES], generator)
+        motion = torch.cat([observed[:true], expected])[:, : config.network.frames]
+        return self.trainer.step(motion, labels.to(self.device), generator)
+
+    @torch.no_grad()
+    def _expected(self, seen: torch.Tensor, generator: torch.Generator) -> torch.Tensor:
+        """Seen frames (B, 25, 9, 3) and what is expected to follow: (B, 75, 9, 3)."""
+        future = hold_last(seen)
+        if self.config.futures == "predicted":
+            draw = torch.rand(len(seen), generator=generator).to(self.device)
+            is_held = (draw < self.config.last_frame)[:, None, None, None]
+            future = torch.where(is_held, future, self.predictor(seen))
+        return torch.cat([seen, future], dim=1)
 
     def validate(self) -> dict[str, float]:
         """Balanced loss, which is the score, and balanced accuracy."""

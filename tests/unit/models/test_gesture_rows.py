@@ -33,8 +33,7 @@ def windows() -> WindowSet:
     labels = torch.arange(len(GESTURES)).repeat(2)
     frames = torch.randn(len(labels) * 75, 9, 3, generator=torch.Generator().manual_seed(0))
     starts = torch.arange(len(labels)) * 75
-    undecided = torch.zeros(len(labels), dtype=torch.bool)
-    return WindowSet(frames, frames, starts, labels, undecided, GESTURES)
+    return WindowSet(frames, frames, starts, labels, labels, GESTURES)
 
 
 def test_rows_differ_in_what_they_get_and_in_nothing_else() -> None:

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,7 +8,7 @@ torch = pytest.importorskip("torch", reason="needs the train extra")
 from agent_server.domain.gesture import GESTURES  # noqa: E402
 from agent_server.domain.skeleton import CORE_BONES, CoreJoint  # noqa: E402
 from agent_server.errors import ConfigError, InvalidInput  # noqa: E402
-from models.data.windows import WindowSet  # noqa: E402
+from models.data.windows import Augmentation, WindowSet  # noqa: E402
 from models.interformer.config import NetworkConfig, TrainConfig  # noqa: E402
 from models.interformer.network import (  # noqa: E402
     Calibrated,
@@ -16,9 +17,9 @@ from models.interformer.network import (  # noqa: E402
     adjacency,
 )
 from models.interformer.train import (  # noqa: E402
+    ClassifierLearner,
     Pools,
     Trainer,
-    complete,
     completed,
     hold_last,
     load_classifier,
@@ -42,8 +43,7 @@ def labelled(repeats: int = 8) -> WindowSet:
     frames += torch.randn(frames.shape, generator=torch.Generator().manual_seed(0)) * 0.01
     flat = frames.reshape(-1, 9, 3)
     starts = torch.arange(count) * 75
-    undecided = torch.zeros(count, dtype=torch.bool)
-    return WindowSet(flat, flat, starts, labels, undecided, GESTURES)
+    return WindowSet(flat, flat, starts, labels, labels, GESTURES)
 
 
 def test_the_mask_is_self_and_neighbours() -> None:
@@ -79,9 +79,10 @@ def test_shapes_and_probabilities() -> None:
 
 
 def test_classes_are_drawn_in_the_shares_asked_for() -> None:
-    pools = Pools.of(labelled())
+    windows = labelled()
+    pools = Pools.of(windows, windows.labels)
     index = pools.draw(2000, 0.5, torch.Generator().manual_seed(0))
-    shares = torch.bincount(pools.windows.labels[index]) / 2000
+    shares = torch.bincount(windows.labels[index]) / 2000
     assert float(shares[-1]) == pytest.approx(0.5, abs=0.04)
     assert float(shares[:-1].max()) < 0.12
 
@@ -89,27 +90,42 @@ def test_classes_are_drawn_in_the_shares_asked_for() -> None:
 def test_a_missing_class_is_named() -> None:
     windows = labelled()
     with pytest.raises(InvalidInput, match="hello"):
-        Pools.of(windows.take((windows.labels != GESTURES.index("hello")).nonzero()[:, 0]))
+        some = windows.take((windows.labels != GESTURES.index("hello")).nonzero()[:, 0])
+        Pools.of(some, some.labels)
 
 
-def test_windows_are_completed_in_the_shares_asked_for() -> None:
-    observed = torch.randn(4000, 75, 9, 3)
-    never = torch.zeros(4000, dtype=torch.bool)
-    generator = torch.Generator().manual_seed(0)
-    config = TrainConfig(true_future=0.2, last_frame=0.1)
+def test_true_futures_come_with_the_label_of_the_whole_window(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    windows = labelled()
+    whole = (windows.labels + 1) % len(GESTURES)
+    shown: list[tuple[torch.Tensor, torch.Tensor]] = []
+    monkeypatch.setattr(
+        Trainer, "step", lambda self, motion, labels, generator: shown.append((motion, labels))
+    )
+    nothing = Augmentation(yaw=0.0, scale=0.0, noise_m=0.0, drop=0.0)
+    config = TrainConfig(
+        network=SMALL, batch=20, true_future=0.25, last_frame=0.5, augmentation=nothing
+    )
 
-    def zero(seen: torch.Tensor) -> torch.Tensor:
-        return torch.zeros(len(seen), 50, 9, 3)
+    class Zero(torch.nn.Module):
+        def forward(self, seen: torch.Tensor) -> torch.Tensor:
+            return torch.full((len(seen), 50, 9, 3), 7.0)
 
-    motion = complete(zero, observed, config, never, generator)
-    future = motion[:, 25:]
-    true = (future == observed[:, 25:]).all(-1).all(-1).all(-1)
-    held = (future == hold_last(observed[:, :25])).all(-1).all(-1).all(-1)
-    assert float(true.float().mean()) == pytest.approx(0.2, abs=0.03)
-    assert float(held.float().mean()) == pytest.approx(0.1, abs=0.03)
-    assert torch.equal(motion[:, :25], observed[:, :25])
-    motion = complete(zero, observed, config, ~never, generator)
-    assert not (motion[:, 25:] == observed[:, 25:]).all(-1).all(-1).all(-1).any()
+    learner = ClassifierLearner(config, replace(windows, whole=whole), windows, Zero())
+    for seed in range(20):
+        learner.step(torch.Generator().manual_seed(seed))
+    wrists = [CoreJoint.LEFT_WRIST, CoreJoint.RIGHT_WRIST]  # some windows are mirrored
+    heights = torch.cat([motion[:, 0, wrists, 1].sum(-1) for motion, _ in shown])
+    labels = torch.cat([each for _, each in shown])
+    future = torch.cat([motion[:, 25:] for motion, _ in shown])
+    predicted = (future == 7.0).all(-1).all(-1).all(-1)
+    true = torch.arange(400) % 20 < 5
+    seen_label = ((heights + 0.4) / 0.15).abs().round().long()
+    assert torch.equal(labels[~true], seen_label[~true])
+    assert torch.equal(labels[true], (seen_label[true] + 1) % len(GESTURES))
+    assert not predicted[true].any()
+    assert float(predicted[~true].float().mean()) == pytest.approx(0.5, abs=0.1)
 
 
 def test_rows_get_the_futures_and_the_frames_that_they_ask_for() -> None:
@@ -167,5 +183,5 @@ def test_contradictions_are_refused() -> None:
         NetworkConfig(patch=4)
     with pytest.raises(ConfigError, match="heads 5"):
         NetworkConfig(heads=5)
-    with pytest.raises(ConfigError, match="add up"):
-        TrainConfig(true_future=0.8, last_frame=0.5)
+    with pytest.raises(ConfigError, match=r"true_future is 1\.2"):
+        TrainConfig(true_future=1.2)

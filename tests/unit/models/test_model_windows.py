@@ -10,13 +10,14 @@ from agent_server.domain.skeleton import CoreJoint  # noqa: E402
 from agent_server.errors import InvalidInput  # noqa: E402
 from models.data.windows import (  # noqa: E402
     AMBIGUOUS,
+    TRAINED,
     Augmentation,
     Recording,
     Stretch,
     augment,
     cut,
-    future_onsets,
     join,
+    whole_labels,
     window_labels,
 )
 
@@ -51,12 +52,25 @@ def test_a_recording_may_show_several_gestures() -> None:
     assert labels.tolist() == [2, 1, 2, 0, 2]
 
 
-def test_a_window_is_undecided_while_a_gesture_lies_in_its_future() -> None:
-    last = np.array([0, 1, 39, 40, 60])
-    stretches = [Stretch("bow", 40, 90)]
-    assert future_onsets(stretches, last).tolist() == [True, True, True, False, False]
-    assert not future_onsets(None, last).any()
-    assert not future_onsets([Stretch("bow", 50, 90)], np.array([0])).any()
+def test_a_whole_window_also_shows_what_begins_in_its_future() -> None:
+    cold = GESTURES.index("cold")
+    last = np.array([0, 49, 50, 69, 70, 100, 140, 141, 149, 150])
+    stretches = [Stretch("cold", 100, 150)]
+    idle = GESTURES.index(IDLE)
+    expected = [idle, idle, AMBIGUOUS, AMBIGUOUS, cold, cold, cold, AMBIGUOUS, AMBIGUOUS, idle]
+    assert whole_labels(stretches, GESTURES, last).tolist() == expected
+    assert set(whole_labels(None, GESTURES, last)) == {AMBIGUOUS}
+
+
+def test_windows_are_judged_where_the_seen_second_says_it_all() -> None:
+    windows = cut([take(200)])
+    judged = windows.judged()
+    last = judged.starts + 24
+    cold = judged.labels == GESTURES.index("cold")
+    assert int(last[cold].min()) == 48
+    assert int(last[~cold].min()) == 90
+    early = cut([take(200)], margins=TRAINED)
+    assert int((early.starts[early.labels == GESTURES.index("cold")] + 24).min()) == 44
 
 
 def test_windows_are_normalised_at_the_last_seen_navel() -> None:
