@@ -5,10 +5,15 @@ import sys
 import typer
 
 from agent_server.errors import AgentServerError
-from models.cli import evaluate, export, train
+from models.cli import evaluate, export, gestures, train
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
-for name, group in {"train": train, "export": export, "evaluate": evaluate}.items():
+for name, group in (
+    ("train", train),
+    ("export", export),
+    ("evaluate", evaluate),
+    ("gestures", gestures),
+):
     app.add_typer(group.app, name=name)
 for command in (evaluate.ablate, evaluate.latency):
     app.command()(command)

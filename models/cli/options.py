@@ -9,7 +9,6 @@ import torch
 import typer
 
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
-from models.evaluation.forecasters import SERVER_BUNDLE
 from models.evaluation.session import OnnxModel
 from models.interformer.config import TrainConfig as InterformerConfig
 from models.ma_wgan.config import TrainConfig as MaWganConfig
@@ -30,8 +29,9 @@ PredictorBundleOption = Annotated[
     Path, typer.Option("--predictor", help="Bundle whose predictor completes the windows.")
 ]
 CACHE = Path("runs/cache")
-PREDICTOR = SERVER_BUNDLE
-CLASSIFIER = Path("models/artifacts/interformer_server")
+ARTIFACTS = Path(__file__).parents[1] / "artifacts"
+PREDICTOR = ARTIFACTS / "ma_wgan_server"
+CLASSIFIER = ARTIFACTS / "interformer_server"
 C = TypeVar("C", MaWganConfig, SimlpeConfig, InterformerConfig)
 
 

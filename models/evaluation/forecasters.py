@@ -14,8 +14,9 @@ from models.data.sets import motion_set
 from models.evaluation.protocols import Protocol
 from models.evaluation.session import OnnxModel
 
-SERVER_BUNDLE = Path("models/artifacts/ma_wgan_server")
-BENCHMARKS = Path("models/benchmarks")
+MODELS = Path(__file__).parents[1]
+SERVER_BUNDLE = MODELS / "artifacts" / "ma_wgan_server"
+BENCHMARKS = MODELS / "benchmarks"
 """Research bundles, one a model and data set: ``best_h36m``, ``simlpe_core``."""
 FITTED_STRIDE = 5
 TIMED = 200
