@@ -58,9 +58,7 @@ def test_a_gesture_near_its_tag_counts_and_others_are_false(tmp_path):
 
 def test_a_folder_without_the_set_is_named(tmp_path):
     with pytest.raises(InvalidInput, match="msrc12"):
-        shipped_report(
-            RuleClassifier(covers_ears).classify, LastFramePredictor().predict, tmp_path
-        )
+        shipped_report(RuleClassifier(covers_ears).classify, LastFramePredictor().predict, tmp_path)
 
 
 def test_the_layout_is_the_readers(tmp_path):
