@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from agent_server.domain.arrays import Float32, Float64
 from agent_server.domain.motion import CLASSIFIED_FRAMES, FRAME_NS, PREDICTED_FRAMES, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
-from models.data.windows import LEAVING_FRAMES, Recording
+from models.data.windows import JUDGED, Recording
 from models.evaluation.gestures import Classify, Predict
 from models.evaluation.readings import HELD, PREDICTED, READINGS, TRUE, completed
 
@@ -82,7 +82,7 @@ def time_seen(
         for stretch in recording.stretches or ():
             last = stretch.onset + FRAMES
             known = (last >= SEEN_FRAMES - 1) & (last < len(recording.observed))
-            known &= last <= stretch.offset - LEAVING_FRAMES
+            known &= last <= stretch.offset - JUDGED.leaving
             for step in np.flatnonzero(known):
                 windows.append(_window(recording.observed, int(last[step])))
                 places.append((len(gestures), step))

@@ -91,7 +91,7 @@ class TrainConfig:
 
     network: NetworkConfig = NetworkConfig()
     futures: Literal["predicted", "true", "held"] = "predicted"
-    steps: int = 7_000
+    steps: int = 5_000
     batch: int = 64
     learning_rate: float = 1e-3
     weight_decay: float = 0.02
@@ -103,7 +103,7 @@ class TrainConfig:
     augmentation: Augmentation = AUGMENTATION
     ema: float = 0.998
     validate_every: int = 500
-    synthetic_sequences: int = 6_000
+    synthetic_sequences: int = 8_000
 
     def __post_init__(self) -> None:
         for name in ("true_future", "last_frame", "idle"):
