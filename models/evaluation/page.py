@@ -75,7 +75,8 @@ def entry(name: str, colour: str) -> str:
 
 def cell(key: str, text: str, best: bool) -> str:
     """A figure of a table; the best of its column is bold."""
-    return f'<td data-key="{escape(key)}">{f"<b>{text}</b>" if best else text}</td>'
+    said = escape(text)
+    return f'<td data-key="{escape(key)}">{f"<b>{said}</b>" if best else said}</td>'
 
 
 def table(corner: str, headings: list[str], body: str) -> str:

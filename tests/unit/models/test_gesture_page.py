@@ -91,6 +91,7 @@ def test_tables_hold_the_figures(page: Page, measured: GestureMeasures) -> None:
         for reading in (PREDICTED, HELD, TRUE):
             recall = figures[reading]["recall"][name]
             assert float(row[reading]) == pytest.approx(100 * recall, abs=0.06)
+    assert page.row(2, "wave")["p"] == "< 0.001"
     assert (page.row(2, IDLE)["decided"], page.row(2, "wave")["decided"]) == ("\u2013", "100")
 
 
