@@ -21,7 +21,9 @@ from models.cli.options import (
     show,
 )
 from models.data.labelled import check_known, read_gestures
-from models.evaluation.gesture_page import write_gesture_page
+from models.evaluation.gesture_measures import measure
+from models.evaluation.gesture_page import show_measures
+from models.evaluation.readings import HELD, PREDICTED, TRUE
 from models.evaluation.session import OnnxModel
 from models.export.teach import Lesson, taught_figures, teach
 
@@ -30,6 +32,8 @@ app = typer.Typer(no_args_is_help=True, help="Teach gestures of one's own.")
 FolderArgument = Annotated[
     Path, typer.Argument(metavar="DIR", help="Folder of labelled *.mcap, or of MSRC-12's files.")
 ]
+EVERY = 3
+"""Every third time is printed: 0.3 s, 0.6 s, ..."""
 TagsOption = Annotated[
     bool, typer.Option("--tags", help="Learn the data set's own names, which convert keeps.")
 ]
@@ -90,17 +94,16 @@ def check(
     check_known(people, taught.subjects, str(folder))
     recordings = taught.of(*people)
     classify, predict = OnnxModel(bundle / MODEL_FILE), OnnxModel(predictor / MODEL_FILE)
-    figures = taught_figures(classify, predict, recordings, classes)
+    measured = measure(classify.batched, predict.batched, recordings, classes)
     if report is not None:
         title = f"{bundle.resolve().name} on recordings of {', '.join(people)}"
-        page = write_gesture_page(
-            report, title, classify.batched, predict.batched, recordings, classes
-        )
-        Console(stderr=True).print(f"wrote {page}")
+        Console(stderr=True).print(f"wrote {show_measures(report, title, measured)}")
+    figures = taught_figures(classify, predict, measured)
     if as_json:
         show(figures, as_json)
     else:
         _print_figures(figures, classes)
+        _print_time_seen(figures["time_seen"])
 
 
 def _tell(manifest: Manifest, out: Path) -> None:
@@ -118,7 +121,7 @@ def _tell(manifest: Manifest, out: Path) -> None:
 
 def _print_figures(figures: dict[str, Any], classes: tuple[str, ...]) -> None:
     console = Console()
-    row = figures["1s+2s_predicted"]
+    row = figures[PREDICTED]
     table = Table(title="Which window is taken for what (rows: what it shows)")
     table.add_column("")
     for name in classes:
@@ -128,12 +131,12 @@ def _print_figures(figures: dict[str, Any], classes: tuple[str, ...]) -> None:
         right = f"{100 * row['recall'][name]:.0f} %" if sum(counts) else "-"
         table.add_row(name, *(str(count or "") for count in counts), right)
     console.print(table)
-    decided = figures["decisions"]
+    decided = figures["decisions"][PREDICTED]
     late = "-" if decided["delay_s_p50"] is None else f"{decided['delay_s_p50']:.2f} s"
     console.print(
         f"windows right: {100 * row['accuracy']:.1f} % "
-        f"(last frame held {100 * figures['1s+last_frame']['accuracy']:.1f} %, "
-        f"3 s seen {100 * figures['3s_true']['accuracy']:.1f} %)\n"
+        f"(last frame held {100 * figures[HELD]['accuracy']:.1f} %, "
+        f"3 s seen {100 * figures[TRUE]['accuracy']:.1f} %)\n"
         f"calibration error: {row['ece']:.3f}\n"
         f"gestures decided on: {100 * decided['right']:.1f} % right, "
         f"{100 * decided['wrong']:.1f} % wrong, {100 * decided['missed']:.1f} % missed, "
@@ -143,3 +146,15 @@ def _print_figures(figures: dict[str, Any], classes: tuple[str, ...]) -> None:
         f"{figures['idle_synthetic']['minutes']} minutes",
         highlight=False,
     )
+
+
+def _print_time_seen(found: dict[str, Any]) -> None:
+    table = Table(title="Gestures named right, by the time seen since their onset")
+    for name in ("seen", "gestures", "2 s predicted", "last frame held", "2 s true"):
+        table.add_column(name, justify="right")
+    columns = (found[name] for name in ("seconds", "gestures", PREDICTED, HELD, TRUE))
+    for place, (seconds, gestures, *shares) in enumerate(zip(*columns, strict=True)):
+        if place % EVERY == 0:
+            cells = ("-" if share is None else f"{100 * share:.0f} %" for share in shares)
+            table.add_row(f"{seconds:.1f} s", str(gestures), *cells)
+    Console().print(table)

@@ -61,7 +61,7 @@ def thesis_report(folder: Path, seed: int = 0) -> dict[str, Any]:
         seed: Of every training.
     """
     torch.set_num_threads(1)
-    split = Split(*(_windows(*PARTS[name]) for name in ("train", "validation", "test")))
+    split = Split(*(table_windows(*PARTS[name]) for name in ("train", "validation", "test")))
     predictors = {"ma_wgan": Bundled(SERVER_BUNDLE)}
     results = train_rows(row_configs(CLASSIFIER, ("ma_wgan",)), predictors, split, folder, seed)
     ablations = train_rows(ABLATIONS, predictors, split, folder, seed)
@@ -78,7 +78,7 @@ def _figures(results: dict[str, RowResult]) -> dict[str, Any]:
     return {name: scores(each.probabilities, each.labels) for name, each in results.items()}
 
 
-def _windows(seed: int, count: int, people: tuple[str, ...]) -> WindowSet:
+def table_windows(seed: int, count: int, people: tuple[str, ...]) -> WindowSet:
     """Windows that begin with each take's movement; an idle take's begin anywhere."""
     takes = synthetic_recordings(seed, count, people, MIX)
     rng = np.random.default_rng(seed)

@@ -1,7 +1,8 @@
 """The card of a classifier that was taught gestures by its user."""
 
 from agent_server.inference.manifest import Manifest
-from models.export.card import decision_lines, head, percent, tail
+from models.evaluation.readings import PREDICTED
+from models.export.card import head, percent, tail
 
 ROWS = {
     "1s+2s_predicted": "1 s seen, 2 s predicted (as it runs)",
@@ -13,7 +14,7 @@ ROWS = {
 def taught_card(manifest: Manifest) -> str:
     """The card in Markdown."""
     results = manifest.results
-    people = results["people"]
+    people, decided = results["people"], results["decisions"][PREDICTED]
     lines = [
         head(manifest, f"Tells {len(manifest.labels)} classes of motion apart."),
         f"Classes: {', '.join(manifest.labels)}; taught by recordings: "
@@ -40,7 +41,10 @@ def taught_card(manifest: Manifest) -> str:
             for key, words in ROWS.items()
         ),
         "",
-        *decision_lines(results["decisions"]),
+        f"- gestures decided on: {percent(decided['right'])} right, {percent(decided['wrong'])} "
+        f"wrong, {percent(decided['missed'])} missed of {decided['gestures']}",
+        f"- from onset to decision: median {decided['delay_s_p50']} s, nine in ten within "
+        f"{decided['delay_s_p90']} s",
         f"- false reactions to synthetic idle motion: "
         f"{results['idle_synthetic']['false_reactions']} in "
         f"{results['idle_synthetic']['minutes']} minutes",

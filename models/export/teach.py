@@ -18,15 +18,10 @@ from models.data.labelled import GestureSet, check_repetitions
 from models.data.splits import HELD_OUT, synthetic_split
 from models.data.streams import idle_streams
 from models.data.windows import AMBIGUOUS, JUDGED, TRAINED, Recording, WindowSet, cut, join
-from models.evaluation.gestures import (
-    evaluate_decisions,
-    false_reactions,
-    hold_last,
-    labelled_windows,
-    probabilities_of,
-    scores,
-)
+from models.evaluation.gesture_measures import GestureMeasures, figures_of, measure
+from models.evaluation.gestures import false_reactions, labelled_windows
 from models.evaluation.latency import latency_ms
+from models.evaluation.readings import READINGS
 from models.evaluation.rows import Bundled
 from models.evaluation.session import OnnxModel
 from models.export.bundle import Export, write_bundle
@@ -48,6 +43,8 @@ IDLE_SEED = 902
 LICENCE = "that of the recordings it was trained on"
 CONFIG = TrainConfig(steps=2_500, idle=0.5, validate_every=250)
 FROZEN_STEPS = 1_500
+CARRIED = (*READINGS, "decisions", "idle_synthetic")
+"""What the manifest holds of the figures."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,36 +165,33 @@ def teach(taught: GestureSet, lesson: Lesson) -> Manifest:
         licence=LICENCE,
     )
 
-    def measure(path: Path) -> dict[str, Any]:
-        figures = taught_figures(OnnxModel(path), predictor.model, taught.of(people.test), classes)
+    def results(path: Path) -> dict[str, Any]:
+        model, predict = OnnxModel(path), predictor.model
+        measured = measure(model.batched, predict.batched, taught.of(people.test), classes)
+        figures = taught_figures(model, predict, measured)
         return {
-            **figures,
+            **{name: figures[name] for name in CARRIED},
+            "latency": latency_ms(model, windows[:1]),
             "temperature": float(calibrated.temperature),
             "people": {"train": people.train, "chosen": people.validation, "test": people.test},
             "taught": taught.gestures,
             "encoder": lesson.encoder,
         }
 
-    return write_bundle(export, lesson.out, measure, taught_card)
+    return write_bundle(export, lesson.out, results, taught_card)
 
 
 def taught_figures(
-    classify: OnnxModel, predict: OnnxModel, recordings: list[Recording], classes: tuple[str, ...]
+    classify: OnnxModel, predict: OnnxModel, measured: GestureMeasures
 ) -> dict[str, Any]:
-    """What a classifier makes of somebody's recordings, and of idle virtual people."""
-    seen, motion, labels = labelled_windows(cut(recordings, STRIDE, classes))
+    """What was measured on somebody's recordings, and reactions to idle virtual people."""
     first, count, _ = HELD_OUT["test"]
     streams = idle_streams(IDLE_SEED, IDLE_MINUTES, subject_names(count, first))
-    forecast, still = (
-        probabilities_of(classify.batched, how, seen) for how in (predict.batched, hold_last)
-    )
     return {
-        "1s+2s_predicted": scores(forecast, labels, classes),
-        "1s+last_frame": scores(still, labels, classes),
-        "3s_true": scores(classify.batched(motion), labels, classes),
-        "decisions": evaluate_decisions(classify.batched, predict.batched, recordings, classes),
-        "idle_synthetic": false_reactions(classify.batched, predict.batched, streams, classes),
-        "latency": latency_ms(classify, np.zeros((1, 75, 9, 3), np.float32)),
+        **figures_of(measured),
+        "idle_synthetic": false_reactions(
+            classify.batched, predict.batched, streams, measured.classes
+        ),
     }
 
 

@@ -1,5 +1,6 @@
 """Teaching gestures: what is read, what is refused, and what comes out."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,6 +9,8 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="needs the train extra")
 
+from typer.testing import CliRunner  # noqa: E402
+
 from agent_server.domain.label import Label  # noqa: E402
 from agent_server.domain.skeleton import CORE_JOINT_NAMES, SkeletonFrame  # noqa: E402
 from agent_server.errors import BundleError, InvalidInput  # noqa: E402
@@ -15,6 +18,7 @@ from agent_server.inference.manifest import read_manifest  # noqa: E402
 from agent_server.inference.runtime import OnnxClassifier  # noqa: E402
 from agent_server.recording.metadata import RecordingMetadata  # noqa: E402
 from agent_server.recording.writer import RecordingWriter  # noqa: E402
+from models.__main__ import app  # noqa: E402
 from models.data.labelled import (  # noqa: E402
     GestureSet,
     check_known,
@@ -163,3 +167,23 @@ def test_idle_actions_that_are_taught_are_not_idle_any_more() -> None:
 
 def test_the_shipped_labels_are_those_of_the_lesson_without_gestures() -> None:
     assert read_manifest(CLASSIFIER).labels == [*BUILT_IN, "idle"]
+
+
+def test_a_check_prints_a_matrix_and_refuses_what_the_bundle_does_not_know(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(teaching, "IDLE_MINUTES", 1)
+    streams = Path(__file__).parents[3] / "recorded_streams"
+    (tmp_path / "hello.mcap").write_bytes((streams / "hello.mcap").read_bytes())
+    words = ["gestures", "check", str(CLASSIFIER), str(tmp_path)]
+    told = CliRunner().invoke(app, words, catch_exceptions=False)
+    assert told.exit_code == 0, told.output
+    assert "hello" in told.stdout
+    assert "calibration error" in told.stdout
+    assert "0.9 s" in told.stdout
+    found = json.loads(CliRunner().invoke(app, [*words, "--json"]).stdout)
+    assert found["decisions"]["1s+2s_predicted"]["gestures"] >= 2
+    assert found["1s+2s_predicted"]["recall"]["hello"] > 0.4
+    write(tmp_path / "wink.mcap", 200, ("wink", 1.0, 2.0))
+    with pytest.raises(InvalidInput, match="show wink"):
+        CliRunner().invoke(app, words, catch_exceptions=False)
