@@ -61,7 +61,8 @@ def reliability(probabilities: Float32, labels: NDArray[np.int64], bins: int = B
 
     def mean(values: Float64) -> Float64:
         sums = np.bincount(which, weights=values, minlength=bins)
-        return np.divide(sums, counts, out=np.full(bins, np.nan), where=counts > 0)
+        means: Float64 = np.divide(sums, counts, out=np.full(bins, np.nan), where=counts > 0)
+        return means
 
     return Reliability(counts, mean(confidence), mean(right.astype(np.float64)))
 

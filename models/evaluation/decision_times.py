@@ -92,7 +92,8 @@ class Answers:
     def by(self, seconds: Float64, which: NDArray[np.bool_]) -> Float64:
         """Share of all gestures that are among some answers and decided by each time (S,)."""
         done = self.delays_s[which][:, None] <= seconds
-        return done.sum(axis=0) / max(1, len(self.asked))
+        share: Float64 = done.sum(axis=0) / max(1, len(self.asked))
+        return share
 
 
 @dataclass(frozen=True, slots=True)

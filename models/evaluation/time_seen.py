@@ -40,7 +40,8 @@ class TimeSeen:
     @property
     def remaining(self) -> NDArray[np.int64]:
         """How many gestures are there at each time, shape (S,)."""
-        return self.there.sum(axis=0)
+        count: NDArray[np.int64] = self.there.sum(axis=0)
+        return count
 
     def share(self, reading: str, gesture: str | None = None) -> Float64:
         """Share of the gestures that are named right at each time (S,); NaN where none is there.
@@ -54,7 +55,9 @@ class TimeSeen:
             counted = counted & (self.gestures == gesture)[:, None]
         shown = counted.sum(axis=0)
         found = (self.right[reading] & counted).sum(axis=0)
-        return np.divide(found, shown, out=np.full(len(shown), np.nan), where=shown > 0)
+        nothing = np.full(len(shown), np.nan)
+        share: Float64 = np.divide(found, shown, out=nothing, where=shown > 0)
+        return share
 
     def first_at(self, reading: str, share: float) -> float | None:
         """The first time at which a share of the gestures is named right, in seconds."""
@@ -77,7 +80,8 @@ def time_seen(
         recordings: Gestures in them start anywhere.
         classes: Names of the classifier's columns.
     """
-    gestures, windows, places, complete = [], [], [], []
+    gestures: list[str] = []
+    windows, places, complete = [], [], []
     for recording in recordings:
         for stretch in recording.stretches or ():
             last = stretch.onset + FRAMES
