@@ -40,7 +40,11 @@ LATEST_MS = 333
 FRAME_MS = FRAME_NS // 1_000_000
 CONFIGS: dict[str, TrainConfig] = {
     "predicted": replace(
-        CLASSIFIER, network=NetworkConfig(classes=len(STREAM_CLASSES)), steps=1_500, idle=0.4
+        CLASSIFIER,
+        network=NetworkConfig(classes=len(STREAM_CLASSES)),
+        steps=1_500,
+        last_frame=0.0,
+        idle=0.4,
     ),
 }
 CONFIGS["seen_only"] = replace(CONFIGS["predicted"], futures="held")

@@ -29,6 +29,7 @@ from models.data.windows import Augmentation, cut
 from models.evaluation.rows import (
     RowResult,
     Split,
+    compared,
     paired_p_value,
     recall_by_class,
     row_configs,
@@ -50,7 +51,7 @@ CLASSIFIER = TrainConfig(
     network=NetworkConfig(classes=len(TAGS)),
     steps=1_200,
     true_future=0.5,
-    last_frame=0.0,
+    last_frame=0.4,
     mixup=0.3,
     validate_every=200,
     augmentation=Augmentation(yaw=0.35, scale=0.1, noise_m=0.01, drop=0.05),
@@ -94,6 +95,7 @@ def _summary(rotations: list[dict[str, RowResult]]) -> dict[str, Any]:
             "accuracy": round(float(np.mean(shares)), 4),
             "per_class": recall_by_class(results, TAGS),
             "rotations": [round(share, 4) for share in shares],
+            "nll": round(float(np.mean([result.nll for result in results])), 4),
         }
     right = {
         name: np.concatenate([rotation[name].right for rotation in rotations])
@@ -103,6 +105,11 @@ def _summary(rotations: list[dict[str, RowResult]]) -> dict[str, Any]:
         "rows": rows,
         "p_value": paired_p_value(right["1s+ma_wgan"], right["1s"]),
         "windows": len(right["1s"]),
+        "ma_wgan_against": {
+            name: compared(right["1s+ma_wgan"], other)
+            for name, other in right.items()
+            if name != "1s+ma_wgan"
+        },
     }
 
 

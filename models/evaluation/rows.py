@@ -82,6 +82,12 @@ class RowResult:
         found: NDArray[np.bool_] = self.probabilities.argmax(1) == self.labels
         return found
 
+    @property
+    def nll(self) -> float:
+        """Mean negative logarithm of the true class's probability."""
+        true = self.probabilities[np.arange(len(self.labels)), self.labels]
+        return float(-np.log(true + 1e-12).mean())
+
 
 def row_configs(base: TrainConfig, predictors: Sequence[str]) -> dict[str, TrainConfig]:
     """Row -> configuration; rows of predictors are called ``1s+NAME``."""
@@ -134,6 +140,15 @@ def paired_p_value(first: NDArray[np.bool_], second: NDArray[np.bool_]) -> float
     if not only_first + only_second:
         return 1.0
     return float(binomtest(only_first, only_first + only_second).pvalue)
+
+
+def compared(first: NDArray[np.bool_], second: NDArray[np.bool_]) -> dict[str, Any]:
+    """How many windows a row has right that another has wrong, and the other way round."""
+    return {
+        "gained": int((first & ~second).sum()),
+        "lost": int((second & ~first).sum()),
+        "p_value": paired_p_value(first, second),
+    }
 
 
 def recall_by_class(results: Sequence[RowResult], classes: Sequence[str]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ from models.evaluation.rows import (  # noqa: E402
     Held,
     RowResult,
     Split,
+    compared,
     paired_p_value,
     recall_by_class,
     row_configs,
@@ -66,6 +67,13 @@ def test_a_paired_test_counts_only_what_differs() -> None:
     assert paired_p_value(both, worse) == 1.0
     worse[:10] = False
     assert paired_p_value(both, worse) == pytest.approx(2 / 2**10)
+
+
+def test_rows_are_compared_window_by_window() -> None:
+    first, second = np.array([True, True, False, True]), np.array([False, True, True, False])
+    assert compared(first, second) == {"gained": 2, "lost": 1, "p_value": 1.0}
+    sure = RowResult(np.array([[0.5, 0.5], [1.0, 0.0]], np.float32), np.array([0, 0]))
+    assert sure.nll == pytest.approx(np.log(2) / 2, abs=1e-6)
 
 
 def test_recall_is_over_all_rotations() -> None:
