@@ -26,9 +26,9 @@ FOLDS = 3
 EVERY = 4
 """Every fourth person is tested in a fold."""
 VALIDATION_PEOPLE = 2
-BEFORE_FRAMES = 30
-AFTER_FRAMES = 12
-"""In a stream, a gesture is taken to last from 1.2 s before its tag to 0.5 s after it."""
+BEFORE_FRAMES = 22
+AFTER_FRAMES = 14
+"""In a stream, a gesture is taken to last from 0.9 s before its tag to 0.6 s after it."""
 
 
 @dataclass(frozen=True, slots=True)

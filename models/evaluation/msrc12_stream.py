@@ -42,7 +42,7 @@ CONFIGS: dict[str, TrainConfig] = {
     "predicted": replace(
         CLASSIFIER,
         network=NetworkConfig(classes=len(STREAM_CLASSES)),
-        steps=1_500,
+        steps=1_000,
         last_frame=0.0,
         idle=0.4,
     ),
@@ -50,7 +50,7 @@ CONFIGS: dict[str, TrainConfig] = {
 CONFIGS["seen_only"] = replace(CONFIGS["predicted"], futures="held")
 COMMAND = "python -m models evaluate gestures --benchmark msrc12-stream --data DIR"
 ENTER = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
-ENTER_WINDOWS = (1, 2, 3)
+ENTER_WINDOWS = (1, 2, 3, 4, 5)
 
 
 @dataclass(frozen=True, slots=True)
