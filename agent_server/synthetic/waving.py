@@ -14,6 +14,8 @@ from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees
 from agent_server.synthetic.trajectory import Vector
 
 Swivel = tuple[float, float]
+FASTEST_SWING_M_S = 3.0
+"""Nobody waves both as wide and as fast as they can."""
 
 
 def _wave(
@@ -55,6 +57,7 @@ def _wave(
     frequency = pen.uniform(*rate) * pen.person.tempo**0.5
     release = arrival + max(0.8 * pen.hold(), 1.5 / frequency)
     amplitude = pen.uniform(*size) * pen.person.vigour * min(1.0, 2.4 / frequency)
+    amplitude = min(amplitude, FASTEST_SWING_M_S / (2 * np.pi * frequency))
     mirrored = pen.chance(0.7)
     depth = pen.rng.normal(0, 0.25) * amplitude
     sink = pen.uniform(0.0, 0.15) * amplitude
