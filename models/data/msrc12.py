@@ -20,6 +20,8 @@ from models.data.real import CoreStream, core_stream, labelled_recordings, sourc
 from models.data.windows import Recording, WindowSet
 
 TAGS = tuple(f"G{number}" for number in range(1, 13))
+STREAM_CLASSES = (*TAGS, IDLE)
+"""Labels of windows of whole recordings."""
 BEFORE_TAG_FRAMES = 1.5 * RATE_HZ
 """Benchmark windows start this long before the tag; the seen second ends 0.5 s before it."""
 FOLDS = 3
@@ -132,10 +134,6 @@ def tagged_recordings(
         if one.subject in subjects
         for part in labelled_recordings(one.stream, _spans(one.marks), one.subject)
     ]
-
-
-STREAM_CLASSES = (*TAGS, IDLE)
-"""Labels of windows of whole recordings."""
 
 
 def _is_whole(stream: CoreStream, start: int) -> bool:

@@ -46,7 +46,7 @@ class Bundled(nn.Module):
 
     def forward(self, seen: torch.Tensor) -> torch.Tensor:
         """(B, 25, 9, 3) -> (B, 50, 9, 3)."""
-        return torch.from_numpy(self.model.batched(seen.numpy()))
+        return torch.from_numpy(self.model.batched(seen.cpu().numpy())).to(seen.device)
 
 
 @dataclass(frozen=True, slots=True)
