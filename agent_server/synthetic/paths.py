@@ -46,6 +46,8 @@ def detour(start: Float64, end: Float64, bow: Vector) -> Vector:
     if (start[2] > 0.06) != (end[2] > 0.06) and min(start[1], end[1]) < -0.2:
         # To the back, or away from it, around the hip.
         x += 0.8 * max(0.0, 0.3 - 0.5 * float(start[0] + end[0]))
+    if min(start[2], end[2]) > 0.06:
+        z = abs(z)  # a hand that stays behind the back has the trunk before it
     share = np.linspace(0.1, 0.9, 9)[:, None]
     straight = start + share * (end - start)
     path = straight + 4 * share * (1 - share) * (x, y, z)

@@ -14,7 +14,7 @@ from agent_server.synthetic.script import BOTH, Hands, Pen, Writer, degrees
 from agent_server.synthetic.trajectory import Vector
 
 Swivel = tuple[float, float]
-FASTEST_SWING_M_S = 3.0
+FASTEST_SWING_M_S = 2.6
 """Nobody waves both as wide and as fast as they can."""
 
 
