@@ -67,7 +67,7 @@ def _throw(pen: Pen) -> None:
     ]
     if pen.chance(0.25):
         spots = [(0.30, -0.48, 0.18), (0.18, -0.25, -0.42), (0.05, 0.08, -0.45)]
-    end = pen.through((pen.main,), spots, pen.uniform(0.42, 0.65))
+    end = pen.through((pen.main,), spots, pen.uniform(0.6, 0.8))
     hands: Hands = (pen.main,)
     if pen.chance(0.4):
         # The other hand reaches ahead for balance.
