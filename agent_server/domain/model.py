@@ -58,3 +58,39 @@ class Classifier(Model, Protocol):
             InferenceError: If the model fails or gives something that is not finite.
         """
         ...
+
+
+class AffectModel(Model, Protocol):
+    """Estimates valence and arousal from one kind of face features."""
+
+    def estimate(self, features: Float32) -> Float32:
+        """Estimate affect with its uncertainty.
+
+        Args:
+            features: Shape (B, D), as :mod:`agent_server.face.features` makes them.
+
+        Returns:
+            Shape (B, 4): valence, arousal and their standard deviations, on [-1, 1].
+
+        Raises:
+            InferenceError: If the model fails or gives something that is not finite.
+        """
+        ...
+
+
+class FaceNetwork(Model, Protocol):
+    """One network of the face pipeline: named arrays out for one array in."""
+
+    def run(self, image: Float32) -> dict[str, Float32]:
+        """Run the network.
+
+        Args:
+            image: Its input, in the shape that its manifest gives.
+
+        Returns:
+            Output name -> array, in the shapes that its manifest gives.
+
+        Raises:
+            InferenceError: If the model fails or gives something that is not finite.
+        """
+        ...

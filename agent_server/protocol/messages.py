@@ -19,7 +19,8 @@ SUBPROTOCOL_JSON = "agent-server.v1.json"
 SUBPROTOCOL_MSGPACK = "agent-server.v1.msgpack"
 
 Role = Literal["sensor", "renderer", "monitor"]
-Face = Literal["expected", "none"]
+Face = Literal["expected", "none", "gaze"]
+FaceFormat = Literal["mesh478", "mesh468", "dlib68"]
 Topic = Literal[
     "pose", "forecast", "affect", "decision", "command", "ack", "scene", "stats", "error"
 ]
@@ -57,8 +58,8 @@ class Pong(Message, frozen=True, tag="pong"):
 class Hello(Message, frozen=True, tag="hello"):
     """First message on every connection.
 
-    ``face`` is what a sensor knows of the face: ``expected`` when affect follows, ``none``
-    for a headset. ``topics`` are the kinds of telemetry that a monitor wants, all if null.
+    ``face`` is what a sensor knows of the face: ``expected`` when a face or affect follows,
+    ``none`` for a headset that hides it, ``gaze`` for one that tells where the person looks. ``topics`` are the kinds of telemetry that a monitor wants, all if null.
     ``time`` is wall time in ISO 8601, for people.
     """
 
@@ -100,6 +101,72 @@ class Affect(Message, frozen=True, tag="affect"):
     originating_ns: Nanoseconds
     valence: Level
     arousal: Level
+
+
+class FacePoints(Message, frozen=True, tag="face"):
+    """The landmarks of one face at one instant (JSON coding).
+
+    Each point is x, y in pixels of the image, x to the right and y down; a mesh has the depth
+    too, in the same unit, smaller towards the camera. ``dlib68`` is the order of dlib and iBUG.
+    """
+
+    originating_ns: Nanoseconds
+    format: FaceFormat
+    width: Annotated[int, Meta(ge=16, le=8192)]
+    height: Annotated[int, Meta(ge=16, le=8192)]
+    points: Annotated[list[list[float]], Meta(max_length=478)]
+
+
+class PackedFacePoints(Message, frozen=True, tag="face"):
+    """The landmarks of one face at one instant (MessagePack coding).
+
+    ``points`` holds x, y and, of a mesh, z of every point as little-endian float32.
+    """
+
+    originating_ns: Nanoseconds
+    format: FaceFormat
+    width: Annotated[int, Meta(ge=16, le=8192)]
+    height: Annotated[int, Meta(ge=16, le=8192)]
+    points: Annotated[bytes, Meta(max_length=478 * 12)]
+
+
+class Blendshapes(Message, frozen=True, tag="blendshapes"):
+    """The expression of one face at one instant, by ARKit's names, each in [0, 1]."""
+
+    originating_ns: Nanoseconds
+    values: Annotated[dict[str, float], Meta(max_length=80)]
+
+
+class Image(Message, frozen=True, tag="image"):
+    """One frame of a camera that sees the face, as JPEG.
+
+    In the JSON coding it is a binary frame: the four bytes ``AFJ1``, four bytes of flags (0),
+    ``originating_ns`` in eight, both little-endian, and the JPEG.
+    """
+
+    originating_ns: Nanoseconds
+    jpeg: bytes
+
+
+class Gaze(Message, frozen=True, tag="gaze"):
+    """Where the person looks: a ray in metres, in the frame of the skeletons."""
+
+    originating_ns: Nanoseconds
+    origin: Point
+    direction: Point
+
+
+class Calibrate(Message, frozen=True, tag="calibrate"):
+    """Makes the person's neutral face the zero of valence and arousal.
+
+    Either the face is neutral for the next ``seconds``, or ``valence`` and ``arousal`` are
+    what an earlier calibration of this person found.
+    """
+
+    originating_ns: Nanoseconds
+    seconds: Annotated[float, Meta(gt=0, le=30)] | None = None
+    valence: Level | None = None
+    arousal: Level | None = None
 
 
 class AckMessage(Message, frozen=True, tag="ack"):
@@ -231,11 +298,18 @@ class ForecastMessage(Message, frozen=True, tag="forecast"):
 
 
 class AffectTelemetry(Message, frozen=True, tag="affect_state"):
-    """Telemetry: the affect as it came in."""
+    """Telemetry: the affect that the gate goes by.
+
+    ``source`` is ``client`` for affect that came in as such, else what it was estimated from:
+    ``mesh``, ``points68`` or ``blendshapes``; an estimate has standard deviations.
+    """
 
     originating_ns: int
     valence: float
     arousal: float
+    valence_sd: float | None = None
+    arousal_sd: float | None = None
+    source: str = "client"
 
 
 class AckTelemetry(Message, frozen=True, tag="ack_state"):
@@ -346,8 +420,9 @@ class StatsMessage(Message, frozen=True, tag="stats"):
     counters: dict[str, int]
 
 
-ClientMessage = Hello | Ping | Pong | Skeleton | Affect | AckMessage | SceneEvent
-PackedClientMessage = Hello | Ping | Pong | PackedSkeleton | Affect | AckMessage | SceneEvent
+_Common = Hello | Ping | Pong | Affect | Blendshapes | Gaze | Calibrate | AckMessage | SceneEvent
+ClientMessage = _Common | Skeleton | FacePoints
+PackedClientMessage = _Common | PackedSkeleton | PackedFacePoints | Image
 ServerMessage = (
     Welcome
     | ErrorMessage

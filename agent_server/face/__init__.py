@@ -1,0 +1,1 @@
+"""Faces from images: detection, tracking, landmarks, blendshapes, head pose, features."""
