@@ -82,21 +82,25 @@ class GateSettings(_Section, frozen=True):
 
     Attributes:
         mode: ``required`` (no usable face: closed), ``optional`` (no usable face: open),
-            ``off`` (always open) or ``thesis`` (required, without hysteresis).
+            ``off`` (always open), ``thesis`` (required, without hysteresis) or ``gaze`` (open
+            while the person looks at the agent; see ``[gaze]``).
         enter_valence: Opens below this valence ...
         enter_arousal: ... and above this absolute arousal.
         leave_valence: Closes above this valence ...
         leave_arousal: ... or below this absolute arousal.
         pleasant_valence: Never open above this valence.
-        max_age_ms: A face older than this is not used.
+        pair_tolerance_ms: A face and a window that are captured farther apart are skewed: the
+            face is used still, and monitors are warned.
+        max_age_ms: A face that is captured farther from the window is stale: it is not used.
     """
 
-    mode: Literal["required", "optional", "off", "thesis"] = "required"
+    mode: Literal["required", "optional", "off", "thesis", "gaze"] = "required"
     enter_valence: float = -3.0
     enter_arousal: float = 3.0
     leave_valence: float = -2.0
     leave_arousal: float = 2.0
     pleasant_valence: float = 0.0
+    pair_tolerance_ms: int = 250
     max_age_ms: int = 1000
 
     def __post_init__(self) -> None:
@@ -109,7 +113,57 @@ class GateSettings(_Section, frozen=True):
             0 <= self.leave_arousal <= self.enter_arousal,
             "0 <= leave_arousal <= enter_arousal must hold",
         )
+        _require(
+            0 < self.pair_tolerance_ms <= self.max_age_ms,
+            "0 < pair_tolerance_ms <= max_age_ms must hold",
+        )
+
+
+class GazeSettings(_Section, frozen=True):
+    """When a person counts as looking at the agent, for the gate's mode ``gaze``.
+
+    Attributes:
+        agent: Where the agent's head is: x, y, z in metres, in the frame of the skeletons. The
+            default is the sensor's place, where a screen with the agent usually stands.
+        enter_deg: The gaze is on the agent within this angle ...
+        leave_deg: ... and leaves it beyond this one.
+        dwell_ms: It must rest there for this long.
+        max_age_ms: A gaze older than this is not used.
+    """
+
+    agent: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    enter_deg: float = 12.0
+    leave_deg: float = 18.0
+    dwell_ms: int = 400
+    max_age_ms: int = 500
+
+    def __post_init__(self) -> None:
+        _check_finite(self)
+        _require(all(map(isfinite, self.agent)), "agent must be finite")
+        _require(
+            0 < self.enter_deg <= self.leave_deg < 90, "0 < enter_deg <= leave_deg < 90 must hold"
+        )
+        _require(self.dwell_ms >= 0, "dwell_ms must not be negative")
         _require(self.max_age_ms > 0, "max_age_ms must be positive")
+
+
+class FaceSettings(_Section, frozen=True):
+    """How valence and arousal are read from a face.
+
+    Attributes:
+        mesh: Which network finds the landmarks in images: ``full`` (478 points) or ``fast``
+            (468 points, a third of the time, not as fine about eyes and lips).
+        window_ms: Estimates of this long are averaged, 1 s as in the thesis; 0 takes each as it
+            is. The average lags behind the face by half of it.
+        record_images: Whether recordings hold the images too. A face is personal data.
+    """
+
+    mesh: Literal["full", "fast"] = "full"
+    window_ms: int = 1000
+    record_images: bool = False
+
+    def __post_init__(self) -> None:
+        _require(0 <= self.window_ms <= 5000, "window_ms must lie in 0..5000")
 
 
 class DecideSettings(_Section, frozen=True):
@@ -165,7 +219,8 @@ class ServerSettings(_Section, frozen=True):
         host: Address to listen on.
         port: Port to listen on; 0 lets the system choose.
         max_sessions: Sessions at once; more are refused.
-        max_message_bytes: A longer message is refused.
+        max_message_bytes: A longer message is refused ...
+        max_image_bytes: ... but for an image, which may have this many.
         max_errors: Bad messages that a connection may have open; good ones pay them back.
         hello_timeout_s: A client that has not said hello by then is sent away.
         heartbeat_s: How often a client ought to ping.
@@ -177,6 +232,7 @@ class ServerSettings(_Section, frozen=True):
     port: int = 8765
     max_sessions: int = 256
     max_message_bytes: int = 64 * 1024
+    max_image_bytes: int = 512 * 1024
     max_errors: int = 20
     hello_timeout_s: float = 10.0
     heartbeat_s: float = 5.0
@@ -187,6 +243,10 @@ class ServerSettings(_Section, frozen=True):
         _check_finite(self)
         _require(0 <= self.port <= 65535, "port must lie in 0..65535")
         _require(self.max_message_bytes >= 4096, "max_message_bytes must be at least 4096")
+        _require(
+            self.max_image_bytes >= self.max_message_bytes,
+            "max_image_bytes must be at least max_message_bytes",
+        )
         for name in ("max_sessions", "max_errors", "hello_timeout_s", "heartbeat_s"):
             _require(getattr(self, name) > 0, f"{name} must be positive")
         _require(self.command_queue >= 1, "command_queue must be at least 1")
@@ -202,7 +262,9 @@ class Settings(_Section, frozen=True):
 
     window: WindowSettings = WindowSettings()
     subject: SubjectSettings = SubjectSettings()
+    face: FaceSettings = FaceSettings()
     gate: GateSettings = GateSettings()
+    gaze: GazeSettings = GazeSettings()
     decide: DecideSettings = DecideSettings()
     models: ModelSettings = ModelSettings()
     server: ServerSettings = ServerSettings()

@@ -51,10 +51,10 @@ def write_stream(scenario: Scenario, path: Path) -> None:
             # As a live server takes them in: checked and rounded.
             if isinstance(event, AffectSample):
                 sample = affect_from_message(affect_to_message(event))
-                appends.append((event.originating_ns, partial(writer.append_affect, sample)))
+                appends.append((event.originating_ns, partial(writer.append_input, sample)))
             else:
                 frame = skeleton_from_message(skeleton_to_message(event))
-                appends.append((event.originating_ns, partial(writer.append_skeleton, frame)))
+                appends.append((event.originating_ns, partial(writer.append_input, frame)))
         for _, append in sorted(appends, key=lambda item: item[0]):
             append()
 
@@ -64,7 +64,7 @@ def write_expected(stream: Path, log: Path) -> int:
     settings, models = Settings(), load_models()
     recording = open_recording(stream)
     rules = load_room(settings, models)
-    core = Core(recording.metadata.session, settings, rules, models.hashes)
+    core = Core(recording.metadata.session, settings, rules, models)
     lines = [log_line(decision) for decision in replay(recording, core, models)]
     log.parent.mkdir(exist_ok=True)
     log.write_bytes(b"".join(line + b"\n" for line in lines))

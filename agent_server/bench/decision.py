@@ -12,7 +12,7 @@ from agent_server.domain.motion import BodyLost
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.scene.rulebook import Rules
 from agent_server.service.core import Core
-from agent_server.service.worker import Models
+from agent_server.service.models import Models
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import predict
 
@@ -58,7 +58,7 @@ def measure_decisions(models: Models, rules: Rules, rounds: int) -> DecisionResu
 
 
 def _run(models: Models, rules: Rules, events: list[Event], times: dict[str, list[float]]) -> None:
-    core = Core("bench", Settings(), rules, models.hashes)
+    core = Core("bench", Settings(), rules, models)
     for event in events:
         if isinstance(event, AffectSample):
             core.feel(event)

@@ -57,7 +57,11 @@ def _round_us(subprotocol: str, wire: list[str | bytes]) -> float:
     settings = Settings()
     codec = CODECS[subprotocol]
     connection = ServerConnection(
-        "sensor", codec, max_message_bytes=settings.server.max_message_bytes, max_errors=1
+        "sensor",
+        codec,
+        max_message_bytes=settings.server.max_message_bytes,
+        max_image_bytes=settings.server.max_image_bytes,
+        max_errors=1,
     )
     connection.receive(codec.encode(m.Hello(m.PROTOCOL, "bench")), 0)
     perception = Perception(settings.window, settings.subject)

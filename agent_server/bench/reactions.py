@@ -7,14 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from agent_server.config import Settings
+from agent_server.domain.inputs import RawInput
 from agent_server.domain.label import Label
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import ConfigError
-from agent_server.recording.reader import RawInput, open_recording
+from agent_server.recording.reader import open_recording
 from agent_server.scene.rulebook import Rules
 from agent_server.service.core import Core
+from agent_server.service.models import Models
 from agent_server.service.replay import replay_stream
-from agent_server.service.worker import Models
 from agent_server.synthetic.scenario import SCENARIOS, play
 
 LATE_NS = NS_PER_S
@@ -103,8 +104,8 @@ def measure_reactions(models: Models, rules: Rules, streams: Iterator[Stream]) -
     quiet_s = 0.0
     for stream in streams:
         count += 1
-        core = Core("bench", Settings(), rules, models.hashes)
-        core.set_face(stream.face != "none")
+        core = Core("bench", Settings(), rules, models)
+        core.set_face(stream.face or "expected")
         reactions = [
             (decision.end_ns, decision.command.reaction)
             for decision in replay_stream(core, models, stream.events)

@@ -17,8 +17,7 @@ from rich.console import Console
 from agent_server import __version__, assets
 from agent_server.cli.options import PortOption, run, settings_with
 from agent_server.cli.story import Story
-from agent_server.domain.affect import AffectSample
-from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.inputs import SensorInput
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import RecordingError
 from agent_server.protocol import messages as m
@@ -95,9 +94,7 @@ def _hello(topics: list[m.Topic] | None = None) -> m.Hello:
 
 async def _play(url: str, recording: Recording, rounds: int, renderer: TimedRenderer) -> None:
     """Play the recording again and again as one person who comes and goes."""
-    inputs = [
-        event for event in recording.events() if isinstance(event, SkeletonFrame | AffectSample)
-    ]
+    inputs = [event for event in recording.events() if isinstance(event, SensorInput)]
     if not inputs:
         raise RecordingError(f"{recording.path} holds nothing that a sensor sent: play another")
     length_ns = inputs[-1].originating_ns + PAUSE_NS

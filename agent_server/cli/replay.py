@@ -25,8 +25,7 @@ from agent_server.cli.options import (
 )
 from agent_server.cli.story import Story
 from agent_server.config import Settings
-from agent_server.domain.affect import AffectSample
-from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.inputs import SensorInput
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import ConfigError
 from agent_server.protocol import messages as m
@@ -92,10 +91,10 @@ def _print_line(decision: m.DecisionBody) -> None:
 def _decide(recording: Recording, settings: Settings) -> Iterator[m.DecisionBody]:
     models = load_models(settings)
     recorded = recording.metadata.bundles
-    for model in (models.predictor, models.classifier):
+    for _, model in models.by_task:
         if recorded.get(model.name, model.sha256) != model.sha256:
             log.warning("recorded with another %s: decisions may differ", model.name)
-    core = Core(recording.metadata.session, settings, load_room(settings, models), models.hashes)
+    core = Core(recording.metadata.session, settings, load_room(settings, models), models)
     return map(decision_body, replay_recording(recording, core, models))
 
 
@@ -122,9 +121,7 @@ async def _send(recording: Recording, url: str, speed: float, show: Story.Teller
         join(url, session, "sensor", hello=hello) as sensor,
     ):
         listener = asyncio.create_task(_listen(monitor, show))
-        inputs = (
-            event for event in recording.events() if isinstance(event, SkeletonFrame | AffectSample)
-        )
+        inputs = (event for event in recording.events() if isinstance(event, SensorInput))
         await send_paced(sensor, inputs, speed)
         await asyncio.sleep(SETTLE_S)
         listener.cancel()
@@ -136,7 +133,8 @@ def _face(recording: Recording) -> m.Face:
         for record in recording.records((CORE.name,)):
             if isinstance(record.message, SensorChanged):
                 return record.message.face
-    return "none" if recording.metadata.face == "none" else "expected"
+    face: m.Face = msgspec.convert(recording.metadata.face or "expected", m.Face)
+    return face
 
 
 async def _listen(monitor: Client, show: Story.Teller) -> None:

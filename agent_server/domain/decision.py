@@ -25,25 +25,42 @@ class Outcome(StrEnum):
     NOTHING_TO_DO = "nothing_to_do"
 
 
+class FacePairing(StrEnum):
+    """How the face goes with the window, by the time of its capture."""
+
+    PAIRED = "paired"
+    SKEWED = "skewed"
+    STALE = "stale"
+    MISSING = "missing"
+    NOT_NEEDED = "not_needed"
+
+
 @dataclass(frozen=True, slots=True)
 class GateVerdict:
     """What the affect gate said.
 
     Attributes:
-        mode: ``required``, ``optional``, ``off`` or ``thesis``.
+        mode: ``required``, ``optional``, ``off``, ``thesis`` or ``gaze``.
         is_open: Whether a discomfort gesture may pass.
         reason: Why, in a few words.
+        face: How the face goes with the window.
         valence: In [-10, 10], or None without a usable face.
         arousal: In [-10, 10], or None without a usable face.
-        age_ms: Time from the face to the end of the window, negative for a newer face, or None.
+        age_ms: Time from the face, or gaze, to the end of the window, negative for a newer one;
+            None where there is none.
+        source: What valence and arousal come from, or None without a usable face.
+        gaze_deg: Angle between the gaze and the way to the agent, or None without a usable gaze.
     """
 
     mode: str
     is_open: bool
     reason: str
-    valence: float | None
-    arousal: float | None
-    age_ms: float | None
+    face: FacePairing
+    valence: float | None = None
+    arousal: float | None = None
+    age_ms: float | None = None
+    source: str | None = None
+    gaze_deg: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

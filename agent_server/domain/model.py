@@ -81,14 +81,19 @@ class AffectModel(Model, Protocol):
 class FaceNetwork(Model, Protocol):
     """One network of the face pipeline: named arrays out for one array in."""
 
-    def run(self, image: Float32) -> dict[str, Float32]:
+    @property
+    def input_shape(self) -> tuple[int, ...]:
+        """Shape of its input: images (1, height, width, 3), or points (1, N, 2)."""
+        ...
+
+    def run(self, given: Float32) -> dict[str, Float32]:
         """Run the network.
 
         Args:
-            image: Its input, in the shape that its manifest gives.
+            given: An image of RGB pixels in the network's range, or points.
 
         Returns:
-            Output name -> array, in the shapes that its manifest gives.
+            Output name -> array.
 
         Raises:
             InferenceError: If the model fails or gives something that is not finite.

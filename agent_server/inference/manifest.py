@@ -6,7 +6,7 @@ and the output that the model must give for it, under their names in the graph) 
 
 import hashlib
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar, overload
 
 import msgspec
 
@@ -40,12 +40,37 @@ class Training(msgspec.Struct, frozen=True):
 
 
 class Manifest(msgspec.Struct, frozen=True):
-    """The content of ``manifest.json``.
+    """What every ``manifest.json`` holds.
 
     Attributes:
         format_version: Version of this layout.
         name: Name of the bundle, the same as its folder's.
         version: Version of the model.
+        task: What it can do.
+        opset: ONNX operator set.
+        parameters: Number of trained parameters.
+        batch_exact: Whether a row of a batch has the bits of a batch of one.
+        files: File name -> SHA-256 in hexadecimal.
+        licence: Licence of the weights.
+        results: Measured figures, by name.
+    """
+
+    format_version: int
+    name: str
+    version: str
+    task: str
+    opset: int
+    parameters: int
+    batch_exact: bool
+    files: dict[str, str]
+    licence: str
+    results: dict[str, Any]
+
+
+class MotionManifest(Manifest, frozen=True):
+    """The manifest of a model of motion.
+
+    Attributes:
         task: ``predict`` (seen -> future positions) or ``classify`` (motion -> probabilities).
         skeleton: ``core9``, the one that the server runs, or that of a research model.
         rate_hz: Frames a second of input and output.
@@ -54,18 +79,9 @@ class Manifest(msgspec.Struct, frozen=True):
         labels: Class names in output order (empty for a predictor).
         normaliser: ``navel_last_seen``: metres, origin at the navel of the last seen frame;
             ``root``: metres, origin at the root, which neither moves nor turns.
-        opset: ONNX operator set.
-        parameters: Number of trained parameters.
-        batch_exact: Whether a row of a batch has the bits of a batch of one.
-        files: File name -> SHA-256 in hexadecimal.
-        licence: Licence of the weights.
         training: How it was made.
-        results: Measured figures, by name.
     """
 
-    format_version: int
-    name: str
-    version: str
     task: Literal["predict", "classify"]
     skeleton: SkeletonName
     rate_hz: int
@@ -73,13 +89,61 @@ class Manifest(msgspec.Struct, frozen=True):
     output_frames: int
     labels: list[str]
     normaliser: Literal["navel_last_seen", "root"]
-    opset: int
-    parameters: int
-    batch_exact: bool
-    files: dict[str, str]
-    licence: str
     training: Training
-    results: dict[str, Any]
+
+
+class Origin(msgspec.Struct, frozen=True):
+    """Where converted weights come from."""
+
+    package: str
+    version: str
+    sha256: str
+    file: str
+
+
+class FaceManifest(Manifest, frozen=True):
+    """The manifest of a network of the face pipeline.
+
+    Attributes:
+        task: ``face``.
+        role: What it finds.
+        input_shape: Of its one input: images (1, height, width, 3) RGB, or points (1, N, 2).
+        input_range: Smallest and largest value of an image's pixels; None for points.
+        outputs: Output name -> shape.
+        origin: Where the weights come from.
+    """
+
+    task: Literal["face"]
+    role: Literal["detector", "mesh", "blendshapes"]
+    input_shape: list[int]
+    input_range: tuple[float, float] | None
+    outputs: dict[str, list[int]]
+    origin: Origin
+
+
+class AffectManifest(Manifest, frozen=True):
+    """The manifest of a model that reads affect: features -> valence, arousal and deviations.
+
+    Attributes:
+        task: ``affect``.
+        source: What a face is given as.
+        features: Number of features, as :mod:`agent_server.face.features` makes them.
+        training: How it was made.
+    """
+
+    task: Literal["affect"]
+    source: Literal["mesh", "points68", "blendshapes"]
+    features: int
+    training: Training
+
+
+class _Task(msgspec.Struct, frozen=True):
+    """Enough of a manifest to tell which kind it is."""
+
+    task: str
+
+
+KindOfManifest = TypeVar("KindOfManifest", bound=Manifest)
 
 
 def sha256_of(path: Path) -> str:
@@ -87,15 +151,42 @@ def sha256_of(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def read_manifest(folder: Path) -> Manifest:
+def read_task(folder: Path) -> str:
+    """What the model of the bundle in ``folder`` can do.
+
+    Raises:
+        BundleError: If there is no manifest, or none that says so.
+    """
+    return _decoded(folder, _Task).task
+
+
+@overload
+def read_manifest(folder: Path) -> MotionManifest: ...
+@overload
+def read_manifest(folder: Path, kind: type[KindOfManifest]) -> KindOfManifest: ...
+def read_manifest(folder: Path, kind: type[Manifest] = MotionManifest) -> Manifest:
     """Read and check the manifest of the bundle in ``folder``, hashes included.
+
+    Args:
+        folder: The bundle.
+        kind: What its manifest must be.
 
     Raises:
         BundleError: If a file is missing, altered, or the manifest does not fit its schema.
     """
     path = folder / MANIFEST_FILE
+    manifest = _decoded(folder, kind)
+    _check(folder, path, manifest)
+    return manifest
+
+
+_Any = TypeVar("_Any")
+
+
+def _decoded(folder: Path, kind: type[_Any]) -> _Any:
+    path = folder / MANIFEST_FILE
     try:
-        manifest = msgspec.json.decode(path.read_bytes(), type=Manifest)
+        return msgspec.json.decode(path.read_bytes(), type=kind)
     except FileNotFoundError:
         raise BundleError(
             f"no {MANIFEST_FILE} in {folder}: a bundle is a folder with {MODEL_FILE}, "
@@ -103,6 +194,9 @@ def read_manifest(folder: Path) -> Manifest:
         ) from None
     except msgspec.MsgspecError as error:
         raise BundleError(f"{path} is not a valid manifest: {error}") from error
+
+
+def _check(folder: Path, path: Path, manifest: Manifest) -> None:
     if manifest.format_version != FORMAT_VERSION:
         raise BundleError(
             f"{path} has format version {manifest.format_version}, this server reads "
@@ -126,7 +220,6 @@ def read_manifest(folder: Path) -> Manifest:
                 f"{folder / name} was altered: its SHA-256 is {actual[:12]}..., the manifest says "
                 f"{expected[:12]}...; restore the file or export the model again"
             )
-    return manifest
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:

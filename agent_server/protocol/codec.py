@@ -1,20 +1,30 @@
-"""The two codings of a message: JSON text and MessagePack bytes."""
+"""The two codings of a message: JSON text and MessagePack bytes.
 
+An image is the one message that is binary in the JSON coding: a short header and the JPEG.
+"""
+
+import struct
 from typing import Any, Protocol
 
 import msgspec
 
+from agent_server.domain.stamp import MAX_STAMP_NS
 from agent_server.errors import InvalidInput
 from agent_server.protocol.messages import (
     SUBPROTOCOL_JSON,
     SUBPROTOCOL_MSGPACK,
     ClientMessage,
+    Image,
     Message,
     PackedClientMessage,
     ServerMessage,
 )
 
 Wire = str | bytes
+
+IMAGE_MAGIC = b"AFJ1"
+IMAGE_HEADER = struct.Struct("<4sIq")
+"""Magic, flags (none is defined: 0), originating_ns; little-endian. The JPEG follows."""
 
 
 class Codec(Protocol):
@@ -47,7 +57,7 @@ class Codec(Protocol):
 
 
 class JsonCodec:
-    """Text messages."""
+    """Text messages, and images as binary ones."""
 
     subprotocol = SUBPROTOCOL_JSON
 
@@ -56,19 +66,15 @@ class JsonCodec:
         self._client = msgspec.json.Decoder(ClientMessage)
         self._server = msgspec.json.Decoder(ServerMessage)
 
-    def encode(self, message: Message) -> str:
-        """One message as JSON text."""
+    def encode(self, message: Message) -> Wire:
+        """One message as JSON text, an image as bytes."""
+        if isinstance(message, Image):
+            return IMAGE_HEADER.pack(IMAGE_MAGIC, 0, message.originating_ns) + message.jpeg
         return self._encoder.encode(message).decode()
 
     def decode_client(self, data: Wire) -> Message:
         """Decode what a client sent."""
-        if isinstance(data, bytes):
-            raise InvalidInput(
-                f"this connection speaks {SUBPROTOCOL_JSON}, whose messages are text; got "
-                f"{len(data)} bytes of binary",
-                code="wrong_coding",
-            )
-        return _decoded(self._client, data)
+        return _image(data) if isinstance(data, bytes) else _decoded(self._client, data)
 
     def decode_server(self, data: Wire) -> Message:
         """Decode what a server sent."""
@@ -102,6 +108,32 @@ class MsgpackCodec:
     def decode_server(self, data: Wire) -> Message:
         """Decode what a server sent."""
         return _decoded(self._server, data)
+
+
+def _image(data: bytes) -> Image:
+    if not data.startswith(IMAGE_MAGIC):
+        raise InvalidInput(
+            f"this connection speaks {SUBPROTOCOL_JSON}, whose messages are text; got "
+            f"{len(data)} bytes of binary without the {IMAGE_MAGIC.decode()} of an image",
+            code="wrong_coding",
+        )
+    if len(data) <= IMAGE_HEADER.size:
+        raise InvalidInput(
+            f"the image has {len(data)} bytes: send {IMAGE_HEADER.size} of header and the JPEG",
+            code="malformed",
+        )
+    _, flags, originating_ns = IMAGE_HEADER.unpack_from(data)
+    if flags != 0:
+        raise InvalidInput(
+            f"flags is {flags}, and none is defined: send 0", field="flags", code="invalid_field"
+        )
+    if not 0 <= originating_ns <= MAX_STAMP_NS:
+        raise InvalidInput(
+            f"originating_ns is {originating_ns}: send nanoseconds in 0..{MAX_STAMP_NS}",
+            field="originating_ns",
+            code="out_of_range",
+        )
+    return Image(originating_ns, data[IMAGE_HEADER.size :])
 
 
 CODECS: dict[str, Codec] = {codec.subprotocol: codec for codec in (JsonCodec(), MsgpackCodec())}

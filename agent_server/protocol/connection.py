@@ -40,7 +40,17 @@ _NEXT = {
 }
 
 _ALLOWED: dict[m.Role, tuple[type[m.Message], ...]] = {
-    "sensor": (m.Skeleton, m.PackedSkeleton, m.Affect),
+    "sensor": (
+        m.Skeleton,
+        m.PackedSkeleton,
+        m.FacePoints,
+        m.PackedFacePoints,
+        m.Blendshapes,
+        m.Image,
+        m.Affect,
+        m.Gaze,
+        m.Calibrate,
+    ),
     "renderer": (m.AckMessage, m.SceneEvent),
     "monitor": (),
 }
@@ -84,18 +94,26 @@ class ServerConnection:
     Args:
         role: What the client came as.
         codec: The coding that was agreed.
-        max_message_bytes: Longer messages are refused.
+        max_message_bytes: Longer messages are refused ...
+        max_image_bytes: ... but for images, which may have this many.
         max_errors: Errors that may be open before the connection is closed.
     """
 
     def __init__(
-        self, role: m.Role, codec: Codec, *, max_message_bytes: int, max_errors: int
+        self,
+        role: m.Role,
+        codec: Codec,
+        *,
+        max_message_bytes: int,
+        max_image_bytes: int,
+        max_errors: int,
     ) -> None:
         self.role = role
         self.codec = codec
         self.state = State.OPENING
         self.rejected = 0
         self._max_message_bytes = max_message_bytes
+        self._max_image_bytes = max_image_bytes
         self._max_errors = max_errors
         self._errors = 0.0
         self._allowed = _ALLOWED[role]
@@ -111,15 +129,11 @@ class ServerConnection:
             What it means, or None for a message that asks for nothing.
         """
         size = len(data) if isinstance(data, bytes) or data.isascii() else len(data.encode())
-        if size > self._max_message_bytes:
-            return self.refuse(
-                InvalidInput(
-                    f"the message has {size} bytes, the limit is {self._max_message_bytes}",
-                    code="too_large",
-                )
-            )
         try:
+            # Only binary messages can be images; which of them are, decoding tells.
+            self._check_size(size, is_image=isinstance(data, bytes))
             message = self.codec.decode_client(data)
+            self._check_size(size, is_image=isinstance(message, m.Image))
             event = self._accept(message, now_ns)
         except InvalidInput as error:
             return self.refuse(error)
@@ -149,6 +163,14 @@ class ServerConnection:
         """Note that the connection is over."""
         if self.state is not State.CLOSED:
             self._enter(State.CLOSED)
+
+    def _check_size(self, size: int, *, is_image: bool) -> None:
+        limit = self._max_image_bytes if is_image else self._max_message_bytes
+        if size > limit:
+            kind = "image" if is_image else "message"
+            raise InvalidInput(
+                f"the {kind} has {size} bytes, the limit is {limit}", code="too_large"
+            )
 
     def _accept(self, message: m.Message, now_ns: int) -> Event:
         if self.state is State.OPENING:

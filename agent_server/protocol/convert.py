@@ -97,6 +97,19 @@ def affect_to_message(sample: AffectSample) -> m.Affect:
     return m.Affect(sample.originating_ns, sample.valence, sample.arousal)
 
 
+def affect_telemetry(sample: AffectSample) -> m.AffectTelemetry:
+    """The affect that the gate goes by, for a monitor."""
+    return m.AffectTelemetry(
+        sample.originating_ns,
+        sample.valence,
+        sample.arousal,
+        sample.valence_sd,
+        sample.arousal_sd,
+        sample.source,
+        sample.delay_ms,
+    )
+
+
 def ack_from_message(message: m.AckMessage, stamp_ns: int) -> Ack:
     """A renderer's word, stamped with its arrival on the session's time line."""
     return Ack(
@@ -177,7 +190,15 @@ def decision_body(decision: Decision) -> m.DecisionBody:
         probabilities=dict(decision.probabilities),
         gesture=decision.gesture,
         gate=m.GateBody(
-            gate.mode, gate.is_open, gate.reason, gate.valence, gate.arousal, gate.age_ms
+            mode=gate.mode,
+            is_open=gate.is_open,
+            reason=gate.reason,
+            valence=gate.valence,
+            arousal=gate.arousal,
+            age_ms=gate.age_ms,
+            face=gate.face.value,
+            source=gate.source,
+            gaze_deg=gate.gaze_deg,
         ),
         scene=None if scene is None else _scene_body(scene),
         outcome=decision.outcome.value,

@@ -22,7 +22,16 @@ Role = Literal["sensor", "renderer", "monitor"]
 Face = Literal["expected", "none", "gaze"]
 FaceFormat = Literal["mesh478", "mesh468", "dlib68"]
 Topic = Literal[
-    "pose", "forecast", "affect", "decision", "command", "ack", "scene", "stats", "error"
+    "pose",
+    "forecast",
+    "affect",
+    "calibration",
+    "decision",
+    "command",
+    "ack",
+    "scene",
+    "stats",
+    "error",
 ]
 Nanoseconds = Annotated[int, Meta(ge=0, le=MAX_STAMP_NS)]
 Level = Annotated[float, Meta(ge=-AFFECT_LIMIT, le=AFFECT_LIMIT)]
@@ -59,8 +68,9 @@ class Hello(Message, frozen=True, tag="hello"):
     """First message on every connection.
 
     ``face`` is what a sensor knows of the face: ``expected`` when a face or affect follows,
-    ``none`` for a headset that hides it, ``gaze`` for one that tells where the person looks. ``topics`` are the kinds of telemetry that a monitor wants, all if null.
-    ``time`` is wall time in ISO 8601, for people.
+    ``none`` for a headset that hides it, ``gaze`` for one that tells where the person looks.
+    ``topics`` are the kinds of telemetry that a monitor wants, all if null. ``time`` is wall
+    time in ISO 8601, for people.
     """
 
     protocol: Annotated[str, Meta(pattern=r"^[0-9]{1,4}\.[0-9]{1,4}$")]
@@ -217,6 +227,7 @@ class Limits(msgspec.Struct, frozen=True):
     """What the server takes from a client."""
 
     max_message_bytes: int
+    max_image_bytes: int
     max_errors: int
 
 
@@ -301,7 +312,8 @@ class AffectTelemetry(Message, frozen=True, tag="affect_state"):
     """Telemetry: the affect that the gate goes by.
 
     ``source`` is ``client`` for affect that came in as such, else what it was estimated from:
-    ``mesh``, ``points68`` or ``blendshapes``; an estimate has standard deviations.
+    ``mesh``, ``points68`` or ``blendshapes``; an estimate has standard deviations, and an
+    average over the last second lags behind the face by ``delay_ms``.
     """
 
     originating_ns: int
@@ -310,6 +322,19 @@ class AffectTelemetry(Message, frozen=True, tag="affect_state"):
     valence_sd: float | None = None
     arousal_sd: float | None = None
     source: str = "client"
+    delay_ms: float | None = None
+
+
+class CalibrationState(Message, frozen=True, tag="calibration_state"):
+    """Telemetry, and the answer to ``calibrate``: what the person's neutral face is held to be.
+
+    ``is_done`` is false when too few faces were seen; what was in force is in force still.
+    """
+
+    valence: float
+    arousal: float
+    faces: int
+    is_done: bool
 
 
 class AckTelemetry(Message, frozen=True, tag="ack_state"):
@@ -330,8 +355,11 @@ class QualityBody(msgspec.Struct, frozen=True):
     warnings: list[str]
 
 
-class GateBody(msgspec.Struct, frozen=True):
-    """What the affect gate said; null without a usable face."""
+class GateBody(msgspec.Struct, frozen=True, omit_defaults=True):
+    """What the affect gate said; numbers are null without a usable face, or gaze.
+
+    ``face`` is ``paired``, ``skewed``, ``stale``, ``missing`` or ``not_needed``.
+    """
 
     mode: str
     is_open: bool
@@ -339,6 +367,9 @@ class GateBody(msgspec.Struct, frozen=True):
     valence: float | None
     arousal: float | None
     age_ms: float | None
+    face: str | None = None
+    source: str | None = None
+    gaze_deg: float | None = None
 
 
 class SceneBody(msgspec.Struct, frozen=True):
@@ -433,6 +464,7 @@ ServerMessage = (
     | PoseMessage
     | ForecastMessage
     | AffectTelemetry
+    | CalibrationState
     | AckTelemetry
     | DecisionMessage
     | StatsMessage

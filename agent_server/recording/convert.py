@@ -136,8 +136,8 @@ def convert(
     with whole_file(output) as part, RecordingWriter(part, metadata) as writer:
         appends = heapq.merge(
             ((t.label.onset_ns, partial(writer.append_label, t.label, t.tag)) for t in labels),
-            ((f.originating_ns, partial(writer.append_affect, f)) for f in faces),
-            ((f.originating_ns, partial(writer.append_skeleton, f)) for f in frames),
+            ((f.originating_ns, partial(writer.append_input, f)) for f in faces),
+            ((f.originating_ns, partial(writer.append_input, f)) for f in frames),
             key=itemgetter(0),
         )
         for _, append in appends:

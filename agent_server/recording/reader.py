@@ -10,22 +10,15 @@ import msgspec
 from mcap.opcode import Opcode
 from mcap.records import Channel, ChunkIndex, Message, Metadata, MetadataIndex, Statistics
 
-from agent_server.domain.affect import AffectSample
-from agent_server.domain.command import Ack
+from agent_server.domain.inputs import RawInput
 from agent_server.domain.label import Label
-from agent_server.domain.scene import ObjectChanged
-from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import InvalidInput, RecordingError
 from agent_server.protocol import messages as m
-from agent_server.protocol.convert import (
-    ack_from_message,
-    affect_from_message,
-    skeleton_from_message,
-)
 from agent_server.recording import topics
+from agent_server.recording.inputs import from_record
 from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
-from agent_server.recording.records import CoreEntry, CoreRecord, LabelRecord
+from agent_server.recording.records import CompressedImage, CoreEntry, CoreRecord, LabelRecord
 from agent_server.recording.scan import (
     RECOVER_HINT,
     DamagedError,
@@ -34,9 +27,6 @@ from agent_server.recording.scan import (
     read_record,
     read_summary,
 )
-
-RawInput = SkeletonFrame | AffectSample | Ack | ObjectChanged
-"""What clients sent in, as the core gets it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +43,7 @@ class Record:
     topic: str
     stamp_ns: int
     sequence: int
-    message: m.Message | CoreEntry
+    message: m.Message | CoreEntry | CompressedImage
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,19 +178,8 @@ class Recording:
             yield Record(topic, item.log_time, item.sequence, message)
 
     def _raw_input(self, record: Record) -> RawInput:
-        message = record.message
         try:
-            match message:
-                case m.Skeleton():
-                    return skeleton_from_message(message)
-                case m.Affect():
-                    return affect_from_message(message)
-                case m.AckMessage():
-                    return ack_from_message(message, record.stamp_ns)
-                case m.SceneEvent():
-                    return ObjectChanged(record.stamp_ns, message.object, message.state)
-                case _:
-                    raise AssertionError(f"{record.topic} is no raw input")
+            return from_record(record.message, record.stamp_ns)
         except InvalidInput as error:
             raise RecordingError(
                 f"{self.path}, record {record.sequence} on {record.topic}: {error}"
@@ -277,5 +256,5 @@ def _decoder(topic: str) -> "Decoder":
     return msgspec.json.Decoder(topics.TOPICS[topic].record)
 
 
-Decoder = msgspec.json.Decoder[m.Message | CoreEntry]
+Decoder = msgspec.json.Decoder[m.Message | CoreEntry | CompressedImage]
 _RAW_INPUTS = tuple(topic.name for topic in topics.RAW_INPUTS)

@@ -33,6 +33,22 @@ class LabelRecord(Message, frozen=True, tag="label"):
         )
 
 
+class Time(msgspec.Struct, frozen=True):
+    """A stamp as Foxglove has it."""
+
+    sec: int
+    nsec: int
+
+
+class CompressedImage(msgspec.Struct, frozen=True):
+    """An image of the face, in the layout that Foxglove shows; ``data`` is Base64 in JSON."""
+
+    timestamp: Time
+    frame_id: str
+    data: bytes
+    format: str = "jpeg"
+
+
 class CoreRecord(msgspec.Struct, frozen=True, omit_defaults=True, tag_field="kind"):
     """Base of what entered the synchronous core beside the sensor's and renderer's messages.
 
@@ -70,7 +86,7 @@ class SensorChanged(CoreRecord, frozen=True, tag="sensor"):
     """The sensor came or went; ``face`` is what its hello said."""
 
     open: bool
-    face: Literal["expected", "none"] = "expected"
+    face: Literal["expected", "none", "gaze"] = "expected"
 
 
 class BodyGone(CoreRecord, frozen=True, tag="body_lost"):

@@ -57,9 +57,9 @@ def _simple(schema: Schema) -> Schema:
     for name, value in schema.get("properties", {}).items():
         if value.get("type") == "object":
             plain[name] = _simple(value)
-        elif value.get("type") == "array" and value["items"].get("type") == "object":
+        elif value.get("type") == "array" and _item_type(value) == "object":
             plain[name] = {**value, "items": _simple(value["items"])}
-        elif value.get("type") == "array" and value["items"].get("type") not in _SCALARS:
+        elif value.get("type") == "array" and _item_type(value) not in _SCALARS:
             beyond[f"^{name}$"] = value
         elif "type" in value:
             plain[name] = value
@@ -71,3 +71,9 @@ def _simple(schema: Schema) -> Schema:
     if beyond:
         simple["patternProperties"] = beyond
     return simple
+
+
+def _item_type(array: Schema) -> object:
+    """Type of an array's items; None for a tuple, whose items are listed one by one."""
+    items = array["items"]
+    return items.get("type") if isinstance(items, dict) else None

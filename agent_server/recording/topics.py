@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from agent_server.protocol import messages as m
-from agent_server.recording.records import CoreEntry, LabelRecord
+from agent_server.recording.records import CompressedImage, CoreEntry, LabelRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +24,10 @@ class Topic:
 
 SKELETON = Topic("/skeleton", "agent_server.Skeleton", m.Skeleton)
 AFFECT = Topic("/affect", "agent_server.Affect", m.Affect)
+FACE = Topic("/face", "agent_server.Face", m.FacePoints | m.Blendshapes)
+GAZE = Topic("/gaze", "agent_server.Gaze", m.Gaze)
+CALIBRATION = Topic("/calibration", "agent_server.Calibrate", m.Calibrate)
+IMAGE = Topic("/image", "foxglove.CompressedImage", CompressedImage)
 ACK = Topic("/ack", "agent_server.Ack", m.AckMessage)
 SCENE_EVENT = Topic("/scene_event", "agent_server.SceneEvent", m.SceneEvent)
 SCENE = Topic("/scene", "agent_server.SceneState", m.SceneState)
@@ -32,10 +36,10 @@ COMMAND = Topic("/command", "agent_server.Command", m.CommandMessage)
 LABEL = Topic("/label", "agent_server.Label", LabelRecord)
 CORE = Topic("/core", "agent_server.Core", CoreEntry)
 
-RAW_INPUTS: tuple[Topic, ...] = (SKELETON, AFFECT, ACK, SCENE_EVENT)
+RAW_INPUTS: tuple[Topic, ...] = (SKELETON, FACE, AFFECT, GAZE, CALIBRATION, ACK, SCENE_EVENT)
 """What clients sent in, as it entered the core."""
 
 TOPICS: dict[str, Topic] = {
-    topic.name: topic for topic in (*RAW_INPUTS, SCENE, DECISION, COMMAND, LABEL, CORE)
+    topic.name: topic for topic in (*RAW_INPUTS, IMAGE, SCENE, DECISION, COMMAND, LABEL, CORE)
 }
 """Every topic by its name."""

@@ -6,19 +6,26 @@ from typing import Self
 
 import msgspec
 
-from agent_server.domain.affect import AffectSample
-from agent_server.domain.command import Ack
+from agent_server.domain.inputs import RawInput
 from agent_server.domain.label import Label
-from agent_server.domain.scene import ObjectChanged
-from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.stamp import NS_PER_S
 from agent_server.protocol import messages as m
-from agent_server.protocol.convert import affect_to_message, skeleton_to_message
 from agent_server.recording import topics
+from agent_server.recording.inputs import to_record
 from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
-from agent_server.recording.records import CoreEntry, LabelRecord
+from agent_server.recording.records import CompressedImage, CoreEntry, LabelRecord, Time
 from agent_server.recording.schema import json_schema
 from agent_server.recording.sink import McapSink
 from agent_server.recording.topics import Topic
+
+Output = m.DecisionMessage | m.CommandMessage | m.SceneState
+"""What a session gives, beside telemetry that can be made anew."""
+
+_OUTPUTS: dict[type[Output], Topic] = {
+    m.DecisionMessage: topics.DECISION,
+    m.CommandMessage: topics.COMMAND,
+    m.SceneState: topics.SCENE,
+}
 
 
 class RecordingWriter:
@@ -45,39 +52,22 @@ class RecordingWriter:
         self._channels: dict[str, int] = {}
         self._sequence = 0
 
-    def append_skeleton(self, frame: SkeletonFrame) -> None:
-        """A frame as it entered the core, at its capture time."""
-        self._append(topics.SKELETON, frame.originating_ns, skeleton_to_message(frame))
+    def append_input(self, value: RawInput) -> None:
+        """What a client sent, as it entered the core."""
+        self._append(*to_record(value))
 
-    def append_affect(self, sample: AffectSample) -> None:
-        """An affect estimate as it entered the core, at its capture time."""
-        self._append(topics.AFFECT, sample.originating_ns, affect_to_message(sample))
-
-    def append_ack(self, ack: Ack) -> None:
-        """The renderer's word on a command, at its arrival."""
-        message = m.AckMessage(ack.command_id, ack.status.value, ack.step, ack.reason)
-        self._append(topics.ACK, ack.stamp_ns, message)
-
-    def append_scene_event(self, event: ObjectChanged) -> None:
-        """An object changed by hand, at its arrival."""
-        message = m.SceneEvent(event.object, event.state)
-        self._append(topics.SCENE_EVENT, event.stamp_ns, message)
+    def append_image(self, jpeg: bytes, stamp_ns: int) -> None:
+        """An image that a face was looked for in, at its capture time."""
+        time = Time(*divmod(stamp_ns, NS_PER_S))
+        self._append(topics.IMAGE, stamp_ns, CompressedImage(time, "face", jpeg))
 
     def append_core(self, entry: CoreEntry) -> None:
         """What else entered the core, at the time that the core was given."""
         self._append(topics.CORE, entry.stamp_ns, entry)
 
-    def append_scene(self, state: m.SceneState, stamp_ns: int) -> None:
-        """The room after a change, at the time of the change."""
-        self._append(topics.SCENE, stamp_ns, state)
-
-    def append_decision(self, decision: m.DecisionMessage, stamp_ns: int) -> None:
-        """A decision and its timing, at the time of the decision."""
-        self._append(topics.DECISION, stamp_ns, decision)
-
-    def append_command(self, command: m.CommandMessage) -> None:
-        """A command, at the time at which it was issued."""
-        self._append(topics.COMMAND, command.issued_ns, command)
+    def append_output(self, message: Output, stamp_ns: int) -> None:
+        """What came of it, at the time of the window or event that it came of."""
+        self._append(_OUTPUTS[type(message)], stamp_ns, message)
 
     def append_label(self, label: Label, tag: str = "") -> None:
         """Ground truth, at its onset; ``tag`` is the data set's own name of the gesture."""

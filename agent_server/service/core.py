@@ -1,24 +1,26 @@
 """The heart of a session, pure in (value, stamp): no clock, no waiting, no chance.
 
-It has two halves. :meth:`Core.observe` and :meth:`Core.feel` take what sensors send and give
-jobs, in the order in which they must be dealt with. The other methods deal with jobs and with
+It has two halves. :meth:`Core.observe` and its neighbours take what sensors send and give jobs,
+in the order in which they must be dealt with. The other methods deal with jobs and with
 what the renderer says, and give commands. A live session runs models between the halves; a
 replay does the same without waiting, and so comes to the same decisions.
 """
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from agent_server.config import Settings
-from agent_server.domain.affect import AffectSample
+from agent_server.domain.affect import AffectSample, Calibrated, Calibration
 from agent_server.domain.command import Ack, Command
 from agent_server.domain.decision import Decision, GateVerdict, Outcome, SceneVerdict
+from agent_server.domain.face import Face, GazeSample
 from agent_server.domain.gesture import Classification
 from agent_server.domain.motion import BodyLost, Forecast, Window
 from agent_server.domain.scene import ObjectChanged, SceneSnapshot
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.scene.room import Acknowledgement, Room
 from agent_server.scene.rulebook import Rules
+from agent_server.service.models import Models
+from agent_server.stages.affect import AffectEstimator
 from agent_server.stages.decide import GestureTracker, Phase, Tracking
 from agent_server.stages.gate import AffectGate
 from agent_server.stages.perceive import Perception
@@ -62,16 +64,15 @@ class Core:
         session: Id of the session; ids of decisions and commands begin with it.
         settings: Thresholds and times.
         rules: The room's rules.
-        models: Name and hash of the models in use, for the decisions.
+        models: The models; those that read affect from a face run here, the decisions name all.
     """
 
-    def __init__(
-        self, session: str, settings: Settings, rules: Rules, models: Mapping[str, str]
-    ) -> None:
+    def __init__(self, session: str, settings: Settings, rules: Rules, models: Models) -> None:
         self._session = session
-        self._models = dict(models)
+        self._hashes = models.hashes
         self._rules = rules
-        self._gate = AffectGate(settings.gate)
+        self._affect = AffectEstimator(models.affect, settings.face)
+        self._gate = AffectGate(settings.gate, settings.gaze)
         self.perception = Perception(settings.window, settings.subject)
         self._tracker = GestureTracker(
             settings.decide, rules.ungated, 1 if settings.window.mode == "thesis" else None
@@ -81,9 +82,9 @@ class Core:
 
     # ------------------------------------------------------------------ what sensors send
 
-    def set_face(self, has_face: bool) -> None:
-        """Say whether any sensor can see the person's face."""
-        self._gate.set_face(has_face)
+    def set_face(self, face: str) -> None:
+        """Say what the sensors see of the person's face: ``expected``, ``none`` or ``gaze``."""
+        self._gate.set_face(face)
 
     def observe(self, frame: SkeletonFrame) -> list[Job]:
         """Take a skeleton frame.
@@ -103,6 +104,33 @@ class Core:
             InvalidInput: If it is out of order.
         """
         self._gate.push(sample)
+
+    def look(self, face: Face) -> tuple[AffectSample, Calibrated | None]:
+        """Take a face and read affect from it.
+
+        Returns:
+            What was read, and what a calibration came to that ended with it.
+
+        Raises:
+            InvalidInput: If it is out of order, or no model reads its kind.
+            InferenceError: If the model fails.
+        """
+        self._gate.require_later(face.originating_ns)
+        sample, calibrated = self._affect.push(face)
+        self._gate.push(sample)
+        return sample, calibrated
+
+    def gaze(self, sample: GazeSample) -> None:
+        """Take a gaze.
+
+        Raises:
+            InvalidInput: If it is out of order.
+        """
+        self._gate.push_gaze(sample)
+
+    def calibrate(self, calibration: Calibration) -> Calibrated | None:
+        """Begin a calibration of the person's neutral face, or take over one that is known."""
+        return self._affect.calibrate(calibration)
 
     @property
     def is_waiting(self) -> bool:
@@ -136,7 +164,7 @@ class Core:
             start_ns=window.start_ns,
             end_ns=window.end_ns,
             body_id=window.body_id,
-            models=self._models,
+            models=self._hashes,
             quality=window.quality,
             forecast=forecast.source,
             forecast_failure=forecast.failure,

@@ -14,9 +14,11 @@ from agent_server.protocol import messages as m
 from agent_server.protocol.connection import CLOSE_GOING_AWAY
 from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Client
+from agent_server.service.camera import Eyes
 from agent_server.service.journal import Journal, NoJournal
+from agent_server.service.models import Models
 from agent_server.service.session import Session
-from agent_server.service.worker import InferenceWorker, Models
+from agent_server.service.worker import InferenceWorker
 
 log = logging.getLogger(__name__)
 
@@ -56,6 +58,7 @@ class Hub:
         self._rules = rules
         self._open_journal = open_journal
         self._worker = InferenceWorker(models)
+        self._eyes = None if models.face is None else Eyes(models.face)
         self._sessions: dict[str, Session] = {}
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._endings: dict[str, asyncio.TimerHandle] = {}
@@ -82,6 +85,8 @@ class Hub:
             finally:
                 self.stop()
                 worker.cancel()
+                if self._eyes is not None:
+                    self._eyes.close()
 
     def stop(self) -> None:
         """Send everybody away and admit nobody any more."""
@@ -121,7 +126,7 @@ class Hub:
     def welcome(self, session: Session, role: m.Role) -> m.Welcome:
         """What a client is told when it may stay."""
         gate, server, decide = self.settings.gate, self.settings.server, self.settings.decide
-        predictor, classifier = self.models.predictor, self.models.classifier
+        models = self.models
         return m.Welcome(
             protocol=m.PROTOCOL,
             server="agent-server",
@@ -131,7 +136,7 @@ class Hub:
             epoch=session.epoch,
             sequence=session.sequence,
             heartbeat_s=server.heartbeat_s,
-            labels=list(classifier.labels),
+            labels=list(models.classifier.labels),
             gate=m.GateLevels(
                 gate.mode,
                 gate.enter_valence,
@@ -142,16 +147,13 @@ class Hub:
             decide=m.DecideLevels(
                 {
                     label: decide.enter if self._rules.is_gated(label) else decide.enter_ungated
-                    for label in classifier.labels
+                    for label in models.classifier.labels
                     if label != IDLE
                 },
                 decide.leave,
             ),
-            limits=m.Limits(server.max_message_bytes, server.max_errors),
-            models=[
-                m.ModelInfo(predictor.name, "predict", predictor.sha256),
-                m.ModelInfo(classifier.name, "classify", classifier.sha256),
-            ],
+            limits=m.Limits(server.max_message_bytes, server.max_image_bytes, server.max_errors),
+            models=[m.ModelInfo(model.name, task, model.sha256) for task, model in models.by_task],
             scene=session.scene(),
         )
 
@@ -169,6 +171,7 @@ class Hub:
             # A session that is opened anew counts its commands anew.
             secrets.token_hex(4),
             NoJournal() if self._open_journal is None else self._open_journal(session_id),
+            self._eyes,
         )
         self._sessions[session_id] = session
         self._tasks[session_id] = self._group.create_task(

@@ -8,16 +8,12 @@ from threading import Thread
 
 from agent_server import __version__
 from agent_server.clock import Clock
-from agent_server.domain.affect import AffectSample
-from agent_server.domain.command import Ack
-from agent_server.domain.scene import ObjectChanged
-from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.inputs import RawInput
 from agent_server.errors import RecordingError
-from agent_server.protocol.messages import CommandMessage, DecisionMessage, SceneState
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.records import CoreEntry
-from agent_server.recording.writer import RecordingWriter
-from agent_server.service.worker import Models
+from agent_server.recording.writer import Output, RecordingWriter
+from agent_server.service.models import Models
 
 log = logging.getLogger(__name__)
 
@@ -35,45 +31,34 @@ class Recorder:
     Args:
         path: File to create.
         metadata: What the recording says about itself.
+        with_images: Whether images of the face are written too.
     """
 
-    def __init__(self, path: Path, metadata: RecordingMetadata) -> None:
+    def __init__(
+        self, path: Path, metadata: RecordingMetadata, *, with_images: bool = False
+    ) -> None:
+        self._with_images = with_images
         self._waiting: Queue[_Write | None] = Queue(MAX_WAITING)
         self._has_failed = False
         self._thread = Thread(target=self._run, args=(path, metadata), name=path.name, daemon=True)
         self._thread.start()
 
-    def append_skeleton(self, frame: SkeletonFrame) -> None:
-        """Write a frame."""
-        self._do(lambda writer: writer.append_skeleton(frame))
+    def append_input(self, value: RawInput) -> None:
+        """Write what a client sent."""
+        self._do(lambda writer: writer.append_input(value))
 
-    def append_affect(self, sample: AffectSample) -> None:
-        """Write a sample."""
-        self._do(lambda writer: writer.append_affect(sample))
-
-    def append_ack(self, ack: Ack) -> None:
-        """Write a renderer's word."""
-        self._do(lambda writer: writer.append_ack(ack))
-
-    def append_scene_event(self, event: ObjectChanged) -> None:
-        """Write a change by hand."""
-        self._do(lambda writer: writer.append_scene_event(event))
+    def append_image(self, jpeg: bytes, stamp_ns: int) -> None:
+        """Write an image, if images are to be recorded."""
+        if self._with_images:
+            self._do(lambda writer: writer.append_image(jpeg, stamp_ns))
 
     def append_core(self, entry: CoreEntry) -> None:
         """Write what else the core was told."""
         self._do(lambda writer: writer.append_core(entry))
 
-    def append_decision(self, decision: DecisionMessage, stamp_ns: int) -> None:
-        """Write a decision."""
-        self._do(lambda writer: writer.append_decision(decision, stamp_ns))
-
-    def append_command(self, command: CommandMessage) -> None:
-        """Write a command."""
-        self._do(lambda writer: writer.append_command(command))
-
-    def append_scene(self, state: SceneState, stamp_ns: int) -> None:
-        """Write the room after a change."""
-        self._do(lambda writer: writer.append_scene(state, stamp_ns))
+    def append_output(self, message: Output, stamp_ns: int) -> None:
+        """Write what came of it."""
+        self._do(lambda writer: writer.append_output(message, stamp_ns))
 
     def close(self) -> None:
         """Finish the file; a disk that hangs is not waited for long."""
@@ -113,14 +98,16 @@ class Recorder:
 _Write = Callable[[RecordingWriter], None]
 
 
-def recorder(folder: Path, session: str, models: Models, clock: Clock) -> Recorder:
+def recorder(
+    folder: Path, session: str, models: Models, clock: Clock, *, with_images: bool = False
+) -> Recorder:
     """A recorder into a new file of ``folder``, named after the session and the time."""
     wall = clock.wall()
     name = f"{session}-{wall[:23].replace(':', '').replace('.', '')}.mcap"
     metadata = RecordingMetadata(
         session=session,
         server_version=__version__,
-        bundles={model.name: model.sha256 for model in (models.predictor, models.classifier)},
+        bundles={model.name: model.sha256 for _, model in models.by_task},
         created=wall,
     )
-    return Recorder(folder / name, metadata)
+    return Recorder(folder / name, metadata, with_images=with_images)

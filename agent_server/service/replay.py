@@ -9,15 +9,17 @@ from collections.abc import Iterable, Iterator
 
 import msgspec
 
-from agent_server.domain.affect import AffectSample
+from agent_server.domain.affect import AffectSample, Calibration
 from agent_server.domain.command import Ack
 from agent_server.domain.decision import Decision
+from agent_server.domain.face import FaceBlendshapes, FaceLandmarks, GazeSample
+from agent_server.domain.inputs import RawInput
 from agent_server.domain.motion import BodyLost
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import RecordingError
 from agent_server.protocol.convert import decision_body
-from agent_server.recording.reader import RawInput, Recording
+from agent_server.recording.reader import Recording
 from agent_server.recording.records import (
     BodyGone,
     CoreEntry,
@@ -29,7 +31,8 @@ from agent_server.recording.records import (
 )
 from agent_server.recording.topics import CORE
 from agent_server.service.core import Core, Job, PendingWindow
-from agent_server.service.worker import Models, infer
+from agent_server.service.models import Models
+from agent_server.service.worker import infer
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import hold_last
 
@@ -48,7 +51,7 @@ def replay(recording: Recording, core: Core, models: Models) -> Iterator[Decisio
     if CORE.name in recording.summary.topics:
         yield from _Follower(recording, core, models).run()
         return
-    core.set_face(recording.metadata.face != "none")
+    core.set_face(recording.metadata.face or "expected")
     yield from replay_stream(core, models, recording.events())
 
 
@@ -74,6 +77,12 @@ def _enter(core: Core, event: RawInput) -> list[Job]:
             return core.observe(event)
         case AffectSample():
             core.feel(event)
+        case FaceLandmarks() | FaceBlendshapes():
+            core.look(event)
+        case GazeSample():
+            core.gaze(event)
+        case Calibration():
+            core.calibrate(event)
         case Ack():
             core.acknowledge(event)
         case ObjectChanged():
@@ -108,7 +117,7 @@ class _Follower:
             case RendererChanged(stamp_ns=now_ns, attached=attached):
                 self._core.set_renderer(attached, now_ns)
             case SensorChanged(face=face):
-                self._core.set_face(face != "none")
+                self._core.set_face(face)
             case BodyGone(stamp_ns=now_ns, body_id=body_id):
                 self._core.lose_body(BodyLost(now_ns, body_id))
 

@@ -8,12 +8,15 @@ from dataclasses import dataclass
 
 from agent_server.clock import Clock
 from agent_server.config import Settings
+from agent_server.domain.affect import Calibrated
 from agent_server.domain.command import Command
+from agent_server.domain.decision import FacePairing, GateVerdict
+from agent_server.domain.face import Face
 from agent_server.domain.motion import BodyLost
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.stamp import NS_PER_MS, NS_PER_S
-from agent_server.errors import InferenceError
-from agent_server.protocol import convert
+from agent_server.errors import InferenceError, InvalidInput
+from agent_server.protocol import convert, faces
 from agent_server.protocol import messages as m
 from agent_server.recording.records import (
     BodyGone,
@@ -25,6 +28,7 @@ from agent_server.recording.records import (
 )
 from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Audience, Client
+from agent_server.service.camera import Camera, Eyes
 from agent_server.service.core import Core, Job, PendingWindow
 from agent_server.service.journal import Journal
 from agent_server.service.seats import Seats
@@ -55,6 +59,7 @@ class Session:
         clock: Where to read the time.
         epoch: Changes with every opening of the session.
         journal: Where the session is recorded.
+        eyes: What finds faces in images, or None where images are not taken.
     """
 
     def __init__(
@@ -66,6 +71,7 @@ class Session:
         clock: Clock,
         epoch: str,
         journal: Journal,
+        eyes: Eyes | None = None,
     ) -> None:
         self.id = session
         self.audience = Audience()
@@ -75,7 +81,7 @@ class Session:
         self._worker = worker
         self._clock = clock
         self._journal = journal
-        self._core = Core(session, settings, rules, worker.models.hashes)
+        self._core = Core(session, settings, rules, worker.models)
         self._timeline = Timeline()
         self._seats = Seats()
         self._latest_command: m.CommandMessage | None = None
@@ -83,6 +89,8 @@ class Session:
         self._jobs: deque[_Waiting] = deque()
         self._wake = asyncio.Event()
         self._is_inferring = False
+        self._is_skewed = False
+        self._camera = None if eyes is None else Camera(eyes)
 
     # ------------------------------------------------------------------ clients
 
@@ -128,8 +136,18 @@ class Session:
         match message:
             case m.Skeleton() | m.PackedSkeleton():
                 self._take_skeleton(client, message, arrival_ns)
+            case m.FacePoints() | m.PackedFacePoints() | m.Blendshapes():
+                stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
+                self._look(faces.face_from_message(message, stamp_ns), client)
+                self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
+            case m.Image():
+                self._take_image(client, message, arrival_ns)
             case m.Affect():
                 self._take_affect(client, message, arrival_ns)
+            case m.Gaze():
+                self._take_gaze(client, message, arrival_ns)
+            case m.Calibrate():
+                self._take_calibration(client, message, arrival_ns)
             case m.AckMessage():
                 self._take_ack(client, message)
             case m.SceneEvent():
@@ -138,39 +156,95 @@ class Session:
     def _take_skeleton(
         self, client: Client, message: m.Skeleton | m.PackedSkeleton, arrival_ns: int
     ) -> None:
-        self._seats.require_stream("body", client)
-        stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
+        stamp_ns = self._stamp(client, "body", message.originating_ns, arrival_ns)
         frame = convert.skeleton_from_message(message, stamp_ns)
         shown = self._core.perception.latest
         jobs = self._core.observe(frame)
-        self._seats.take_stream("body", client)
-        self._timeline.accept(id(client), message.originating_ns, stamp_ns, arrival_ns)
+        self._accept(client, "body", message.originating_ns, stamp_ns, arrival_ns)
         self.counters["frames"] += 1
-        self._journal.append_skeleton(frame)
+        self._journal.append_input(frame)
         self._enqueue(jobs, arrival_ns)
         latest = self._core.perception.latest
         if latest is not None and latest is not shown and self.audience.wants("pose"):
             self.audience.show("pose", convert.pose_message(latest))
 
     def _take_affect(self, client: Client, message: m.Affect, arrival_ns: int) -> None:
-        self._seats.require_stream("face", client)
-        stamp_ns = self._timeline.map(id(client), message.originating_ns, arrival_ns)
+        stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
         sample = convert.affect_from_message(message, stamp_ns)
         self._core.feel(sample)
-        self._seats.take_stream("face", client)
-        self._timeline.accept(id(client), message.originating_ns, stamp_ns, arrival_ns)
+        self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
         self.counters["affect_samples"] += 1
-        self._journal.append_affect(sample)
-        self.audience.show(
-            "affect", m.AffectTelemetry(sample.originating_ns, sample.valence, sample.arousal)
-        )
+        self._journal.append_input(sample)
+        self.audience.show("affect", convert.affect_telemetry(sample))
+
+    def _take_gaze(self, client: Client, message: m.Gaze, arrival_ns: int) -> None:
+        stamp_ns = self._stamp(client, "gaze", message.originating_ns, arrival_ns)
+        sample = faces.gaze_from_message(message, stamp_ns)
+        self._core.gaze(sample)
+        self._accept(client, "gaze", message.originating_ns, stamp_ns, arrival_ns)
+        self.counters["gazes"] += 1
+        self._journal.append_input(sample)
+
+    def _take_calibration(self, client: Client, message: m.Calibrate, arrival_ns: int) -> None:
+        stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
+        calibration = faces.calibration_from_message(message, stamp_ns)
+        calibrated = self._core.calibrate(calibration)
+        self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
+        self._journal.append_input(calibration)
+        self._show_calibration(calibrated, client)
+
+    def _take_image(self, client: Client, message: m.Image, arrival_ns: int) -> None:
+        if self._camera is None:
+            raise InvalidInput(
+                "this server has no networks that find a face in an image: send landmarks, "
+                "blendshapes or valence and arousal",
+                field="type",
+                code="no_model",
+            )
+        stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
+        self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
+        self.counters["images"] += 1
+        self.counters["skipped_images"] += self._camera.push(client, message.jpeg, stamp_ns)
+
+    def _stamp(self, client: Client, kind: str, originating_ns: int, arrival_ns: int) -> int:
+        """The stamp, on the session's time line, of what a sensor may send; changes nothing."""
+        self._seats.require_stream(kind, client)
+        return self._timeline.map(id(client), originating_ns, arrival_ns)
+
+    def _accept(
+        self, client: Client, kind: str, originating_ns: int, stamp_ns: int, arrival_ns: int
+    ) -> None:
+        """What came with this stamp was taken."""
+        self._seats.take_stream(kind, client)
+        self._timeline.accept(id(client), originating_ns, stamp_ns, arrival_ns)
+
+    def _look(self, face: Face, client: Client) -> None:
+        try:
+            sample, calibrated = self._core.look(face)
+        except InferenceError as error:
+            self.counters["affect_failures"] += 1
+            log.error("session %s: no affect from a face: %s", self.id, error)
+            self.audience.show("error", m.ErrorMessage("affect_failed", str(error)))
+            return
+        self.counters["faces"] += 1
+        self._journal.append_input(face)
+        self.audience.show("affect", convert.affect_telemetry(sample))
+        self._show_calibration(calibrated, client)
+
+    def _show_calibration(self, calibrated: Calibrated | None, client: Client) -> None:
+        """Tell the monitors and the sensor what a calibration came to."""
+        if calibrated is None:
+            return
+        state = faces.calibrated_message(calibrated)
+        self.audience.show("calibration", state)
+        client.outbox.update("calibration", state)
 
     def _take_ack(self, client: Client, message: m.AckMessage) -> None:
         self._seats.require_room(client)
         ack = convert.ack_from_message(message, self._now())
         heard = self._core.acknowledge(ack)
         self.counters["acks" if heard.taken else "stale_acks"] += 1
-        self._journal.append_ack(ack)
+        self._journal.append_input(ack)
         self._deliver(heard.commands, ack.stamp_ns)
         self.audience.show(
             "ack",
@@ -182,7 +256,7 @@ class Session:
         event = ObjectChanged(self._now(), message.object, message.state)
         commands = self._core.change_object(event)
         self.counters["scene_events"] += 1
-        self._journal.append_scene_event(event)
+        self._journal.append_input(event)
         self._deliver(commands, event.stamp_ns)
 
     # ------------------------------------------------------------------ work
@@ -192,6 +266,8 @@ class Session:
         async with asyncio.TaskGroup() as group:
             group.create_task(self._work(), name=f"{self.id}: jobs")
             group.create_task(self._tick(), name=f"{self.id}: ticks")
+            if self._camera is not None:
+                group.create_task(self._see(self._camera), name=f"{self.id}: images")
 
     def close(self, code: int, reason: str) -> None:
         """Send all clients away and end the recording."""
@@ -209,6 +285,28 @@ class Session:
                     self._lose_body(waiting.job)
                 else:
                     await self._decide(waiting.job, waiting.arrival_ns)
+
+    async def _see(self, camera: Camera) -> None:
+        """Look for the face in one image after the other, always the latest."""
+        while True:
+            image = await camera.take()
+            self._journal.append_image(image.jpeg, image.stamp_ns)
+            try:
+                face = await camera.look(image)
+                if face is None:
+                    self.counters["images_without_face"] += 1
+                elif image.client in self.audience.clients:
+                    self._look(face, image.client)
+            except InvalidInput as error:
+                # The image was bad, or a face came in another way that is newer.
+                self.counters["rejected_messages"] += 1
+                image.client.outbox.update(
+                    "image", m.ErrorMessage(error.code, str(error), error.field)
+                )
+            except InferenceError as error:
+                self.counters["affect_failures"] += 1
+                log.error("session %s: no face from an image: %s", self.id, error)
+                self.audience.show("error", m.ErrorMessage("face_failed", str(error)))
 
     def _lose_body(self, lost: BodyLost) -> None:
         self.counters["bodies_lost"] += 1
@@ -242,8 +340,9 @@ class Session:
             convert.decision_body(result.decision),
             self._timing(inference, arrival_ns, started_ns, begin_ns, end_ns),
         )
-        self._journal.append_decision(decided, window.end_ns)
+        self._journal.append_output(decided, window.end_ns)
         self.audience.show("decision", decided)
+        self._warn_of_skew(result.decision.gate)
         if self.audience.wants("forecast"):
             forecast = convert.forecast_message(window.index, window.end_ns, inference.forecast)
             self.audience.show("forecast", forecast)
@@ -281,6 +380,20 @@ class Session:
 
     # ------------------------------------------------------------------ output
 
+    def _warn_of_skew(self, gate: GateVerdict) -> None:
+        """Tell the monitors when body and face begin to be captured too far apart."""
+        was_skewed, self._is_skewed = self._is_skewed, gate.face is FacePairing.SKEWED
+        if self._is_skewed and not was_skewed:
+            self.counters["face_skews"] += 1
+            self.audience.show(
+                "error",
+                m.ErrorMessage(
+                    "face_skew",
+                    f"the face was captured {gate.age_ms:g} ms before the end of the window: send "
+                    "faces more often, or let body and face be stamped by one clock",
+                ),
+            )
+
     def _deliver(self, commands: Iterable[Command], now_ns: int) -> None:
         """Send commands, and the room where it has changed."""
         for command in commands:
@@ -288,12 +401,12 @@ class Session:
             self.counters["commands"] += 1
             self._latest_command = message = convert.command_message(command, self.epoch)
             self.audience.order(message)
-            self._journal.append_command(message)
+            self._journal.append_output(message, message.issued_ns)
         scene = self.scene()
         if scene != self._shown_scene:
             self._shown_scene = scene
             self.audience.show_scene(scene)
-            self._journal.append_scene(scene, now_ns)
+            self._journal.append_output(scene, now_ns)
 
     def _stats(self) -> m.StatsMessage:
         c = self.counters
@@ -336,8 +449,8 @@ class Session:
         self._deliver(self._core.set_renderer(True, now_ns), now_ns)
 
     def _update_face(self, *, is_open: bool) -> None:
-        """A face is expected unless every sensor that is there has none."""
-        faces = [sensor.hello.face for sensor in self.audience.having("sensor")]
-        face: m.Face = "expected" if "expected" in faces or not faces else "none"
-        self._core.set_face(face == "expected")
+        """A face is expected unless every sensor that is there has none, or the gaze instead."""
+        said = {sensor.hello.face for sensor in self.audience.having("sensor")} or {"expected"}
+        face: m.Face = "expected" if "expected" in said else "gaze" if "gaze" in said else "none"
+        self._core.set_face(face)
         self._journal.append_core(SensorChanged(self._now(), is_open, face))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from agent_server import __version__
 from agent_server.clock import Clock
-from agent_server.domain.affect import AffectSample
+from agent_server.domain.inputs import RawInput
 from agent_server.domain.label import Label
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import RecordingError
@@ -97,15 +97,13 @@ class TakeRecorder(NoJournal):
         self._tell(OtherSession(session))
         return NoJournal()
 
-    def append_skeleton(self, frame: SkeletonFrame) -> None:
-        """Write a frame, and do what it is time for."""
-        self._write(lambda: self._append_frame(frame))
-
-    def append_affect(self, sample: AffectSample) -> None:
-        """Write a sample that comes while there is a body."""
-        if self._writer is not None:
+    def append_input(self, value: RawInput) -> None:
+        """Write what the sensor sends, from the first frame of a body on."""
+        if isinstance(value, SkeletonFrame):
+            self._write(lambda: self._append_frame(value))
+        elif self._writer is not None:
             writer = self._writer
-            self._write(lambda: writer.append_affect(sample))
+            self._write(lambda: writer.append_input(value))
 
     def append_core(self, entry: CoreEntry) -> None:
         """Take note of sensors that come and go, and of time that passes."""
@@ -122,7 +120,7 @@ class TakeRecorder(NoJournal):
     def _append_frame(self, frame: SkeletonFrame) -> None:
         if self._writer is None:
             self._writer = RecordingWriter(self.path, self._metadata(frame))
-        self._writer.append_skeleton(frame)
+        self._writer.append_input(frame)
         self.frames += 1
         self._act(self.director.push(frame))
 

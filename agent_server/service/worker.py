@@ -12,28 +12,15 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 from agent_server.domain.gesture import Classification
-from agent_server.domain.model import Classifier, Predictor
 from agent_server.domain.motion import Forecast, Window
 from agent_server.errors import InferenceError
+from agent_server.service.models import Models
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import predict
 
 log = logging.getLogger(__name__)
 
 MAX_BATCH = 16
-
-
-@dataclass(frozen=True, slots=True)
-class Models:
-    """The models in use."""
-
-    predictor: Predictor
-    classifier: Classifier
-
-    @property
-    def hashes(self) -> dict[str, str]:
-        """Bundle name -> first 12 hexadecimal digits of the model's hash."""
-        return {model.name: model.sha256[:12] for model in (self.predictor, self.classifier)}
 
 
 @dataclass(frozen=True, slots=True)

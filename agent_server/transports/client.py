@@ -9,13 +9,12 @@ from websockets.exceptions import ConnectionClosed, WebSocketException
 from websockets.typing import Subprotocol
 
 from agent_server import __version__
-from agent_server.domain.affect import AffectSample
-from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.inputs import SensorInput
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import AgentServerError
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS, Codec
-from agent_server.protocol.convert import affect_to_message, pack_skeleton, skeleton_to_message
+from agent_server.protocol.inputs import input_to_message, packed
 
 
 class ConnectionFailed(AgentServerError):
@@ -40,8 +39,8 @@ class Client:
         Raises:
             ConnectionFailed: If the connection is gone.
         """
-        if isinstance(message, m.Skeleton) and self._codec.subprotocol == m.SUBPROTOCOL_MSGPACK:
-            message = pack_skeleton(message)
+        if self._codec.subprotocol == m.SUBPROTOCOL_MSGPACK:
+            message = packed(message)
         try:
             await self._socket.send(self._codec.encode(message))
         except ConnectionClosed as error:
@@ -109,9 +108,7 @@ async def join(
         yield Client(socket, codec, answer)
 
 
-async def send_paced(
-    client: Client, events: Iterable[SkeletonFrame | AffectSample], speed: float
-) -> int:
+async def send_paced(client: Client, events: Iterable[SensorInput], speed: float) -> int:
     """Send recorded events with the timing of their stamps.
 
     Args:
@@ -131,9 +128,6 @@ async def send_paced(
         due_s = start_s + (event.originating_ns - first_ns) / NS_PER_S / speed
         if (wait_s := due_s - loop.time()) > 0:
             await asyncio.sleep(wait_s)
-        if isinstance(event, AffectSample):
-            await client.send(affect_to_message(event))
-        else:
-            await client.send(skeleton_to_message(event))
+        await client.send(input_to_message(event))
         count += 1
     return count

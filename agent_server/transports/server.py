@@ -14,17 +14,25 @@ from agent_server import assets
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
 from agent_server.errors import ConfigError, RuleError
-from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
+from agent_server.inference.runtime import (
+    OnnxAffect,
+    OnnxClassifier,
+    OnnxFaceNetwork,
+    OnnxPredictor,
+)
 from agent_server.scene.rulebook import Rules
 from agent_server.scene.rules import default_rules, load_rules
 from agent_server.service.hub import Hub
+from agent_server.service.models import FaceNetworks, Models
 from agent_server.service.recorder import recorder
-from agent_server.service.worker import Models
 from agent_server.transports.app import create_app
 
 GOODBYE_S = 0.1
 PREDICTOR = "ma_wgan_server"
 CLASSIFIER = "interformer_server"
+DETECTOR = "face_detector"
+MESHES = {"full": "face_mesh", "fast": "face_mesh_fast"}
+AFFECT_SOURCES = ("mesh", "points68", "blendshapes")
 
 
 def load_models(settings: Settings | None = None) -> Models:
@@ -37,10 +45,16 @@ def load_models(settings: Settings | None = None) -> Models:
         BundleError: If a bundle is missing, altered or wrong.
     """
     shipped = assets.bundles()
-    chosen = (settings or Settings()).models
+    settings = settings or Settings()
+    chosen = settings.models
+    mesh = MESHES[settings.face.mesh]
     return Models(
         OnnxPredictor(Path(chosen.predictor or shipped / PREDICTOR)),
         OnnxClassifier(Path(chosen.classifier or shipped / CLASSIFIER)),
+        {source: OnnxAffect(shipped / f"affect_{source}", source) for source in AFFECT_SOURCES},
+        FaceNetworks(
+            OnnxFaceNetwork(shipped / DETECTOR, "detector"), OnnxFaceNetwork(shipped / mesh, "mesh")
+        ),
     )
 
 
@@ -59,7 +73,13 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
     open_journal = None
     if record_to is not None:
         record_to.mkdir(parents=True, exist_ok=True)
-        open_journal = partial(recorder, record_to, models=models, clock=clock)
+        open_journal = partial(
+            recorder,
+            record_to,
+            models=models,
+            clock=clock,
+            with_images=settings.face.record_images,
+        )
     return Hub(settings, load_room(settings, models), models, clock, open_journal)
 
 
@@ -138,7 +158,7 @@ async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[asyncio.Ta
             create_app(hub, assets.page()),
             ws="websockets-sansio",
             # The protocol's own limit answers with a sentence; this one only guards memory.
-            ws_max_size=4 * hub.settings.server.max_message_bytes,
+            ws_max_size=2 * hub.settings.server.max_image_bytes,
             ws_per_message_deflate=False,
             log_level="warning",
             lifespan="on",

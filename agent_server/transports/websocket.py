@@ -139,6 +139,7 @@ class _Visit:
             role,
             link.codec,
             max_message_bytes=server.max_message_bytes,
+            max_image_bytes=server.max_image_bytes,
             max_errors=server.max_errors,
         )
         self._outbox = Outbox(server.command_queue)

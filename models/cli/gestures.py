@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from agent_server.inference.manifest import MODEL_FILE, Manifest, read_manifest
+from agent_server.inference.manifest import MODEL_FILE, MotionManifest, read_manifest
 from models.cli.options import (
     CACHE,
     CLASSIFIER,
@@ -106,7 +106,7 @@ def check(
         _print_time_seen(figures["time_seen"])
 
 
-def _tell(manifest: Manifest, out: Path) -> None:
+def _tell(manifest: MotionManifest, out: Path) -> None:
     people, minutes = manifest.results["people"], manifest.training.wall_s / 60
     _print_figures(manifest.results, tuple(manifest.labels))
     console = Console()

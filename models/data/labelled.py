@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from agent_server.domain.gesture import IDLE
+from agent_server.domain.inputs import RawInput
 from agent_server.domain.motion import CLASSIFIED_FRAMES, RATE_HZ
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import InvalidInput
 from agent_server.recording import topics
-from agent_server.recording.reader import RawInput, open_recording
+from agent_server.recording.reader import open_recording
 from agent_server.recording.records import LabelRecord
 from agent_server.skeleton.retarget import navel_distance
 from agent_server.skeleton.subject import SubjectLock

@@ -9,7 +9,7 @@ from agent_server.domain.arrays import Float32
 
 
 class OnnxModel:
-    """An ONNX file with one input and one output.
+    """An ONNX file with one input.
 
     Args:
         path: The file.
@@ -25,9 +25,14 @@ class OnnxModel:
         self.output = self._session.get_outputs()[0].name
 
     def __call__(self, values: Float32) -> Float32:
-        """Run a batch."""
+        """The first output for a batch."""
         result: Float32 = self._session.run(None, {self.input: values})[0]
         return result
+
+    def named(self, values: Float32) -> dict[str, Float32]:
+        """All outputs by name."""
+        names = [output.name for output in self._session.get_outputs()]
+        return dict(zip(names, self._session.run(names, {self.input: values}), strict=True))
 
     def batched(self, values: Float32, size: int = 256) -> Float32:
         """Run any number of rows, ``size`` at a time."""

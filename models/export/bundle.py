@@ -18,7 +18,7 @@ from agent_server.inference.manifest import (
     GOLDEN_FILE,
     MODEL_FILE,
     DataSource,
-    Manifest,
+    MotionManifest,
     SkeletonName,
     Training,
     read_manifest,
@@ -85,8 +85,8 @@ def write_bundle(
     export: Export,
     folder: Path,
     measure: Callable[[Path], dict[str, Any]],
-    card: Callable[[Manifest], str],
-) -> Manifest:
+    card: Callable[[MotionManifest], str],
+) -> MotionManifest:
     """Write, check and measure a bundle; nothing is left behind if a check fails.
 
     Args:
@@ -115,7 +115,7 @@ def write_bundle(
         golden = _golden_input(export.windows)
         arrays: dict[str, Any] = {input_name: golden, output_name: model(golden)}
         np.savez_compressed(draft / GOLDEN_FILE, **arrays)
-        manifest = Manifest(
+        manifest = MotionManifest(
             format_version=FORMAT_VERSION,
             name=export.name,
             version=export.version,

@@ -5,7 +5,7 @@ from typing import Any
 
 from agent_server.config import DecideSettings
 from agent_server.domain.gesture import GESTURES
-from agent_server.inference.manifest import Manifest
+from agent_server.inference.manifest import MotionManifest
 
 _DECIDE = DecideSettings()
 
@@ -29,7 +29,7 @@ GESTURE_ROWS = {
 }
 
 
-def predictor_card(manifest: Manifest) -> str:
+def predictor_card(manifest: MotionManifest) -> str:
     """The card of a predictor."""
     origin = (
         "the navel of the last seen frame, axes of the camera frame"
@@ -63,7 +63,7 @@ def _measured(results: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return [results, *nested] if "protocol" in results else nested
 
 
-def classifier_card(manifest: Manifest) -> str:
+def classifier_card(manifest: MotionManifest) -> str:
     """The card of a classifier."""
     results = manifest.results
     lines = [
@@ -117,7 +117,7 @@ def classifier_card(manifest: Manifest) -> str:
     return "\n".join([*lines, "", *tail(manifest)])
 
 
-def head(manifest: Manifest, sentence: str) -> str:
+def head(manifest: MotionManifest, sentence: str) -> str:
     """Title, a sentence, and what the weights are."""
     return (
         f"# {manifest.name} {manifest.version}\n\n{sentence}\n\n"
@@ -159,7 +159,7 @@ def decision_lines(row: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def tail(manifest: Manifest) -> list[str]:
+def tail(manifest: MotionManifest) -> list[str]:
     """Time, exactness and origin."""
     training, results = manifest.training, manifest.results
     same = "the same bits as" if manifest.batch_exact else "other bits than"
@@ -180,7 +180,7 @@ def tail(manifest: Manifest) -> list[str]:
     ]
 
 
-def _caveat(manifest: Manifest) -> str:
+def _caveat(manifest: MotionManifest) -> str:
     if manifest.licence.startswith("research only"):
         return (
             "Research only: these weights may be used to check the figures above and for nothing "

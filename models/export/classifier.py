@@ -7,7 +7,7 @@ import torch
 
 from agent_server.domain.gesture import GESTURES
 from agent_server.domain.motion import SEEN_FRAMES
-from agent_server.inference.manifest import MODEL_FILE, Manifest, read_manifest
+from agent_server.inference.manifest import MODEL_FILE, MotionManifest, read_manifest
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import AMBIGUOUS, cut, join
 from models.evaluation.report import STRIDE, classifier_report
@@ -29,7 +29,7 @@ def export_classifier(
     version: str,
     data: Path,
     cache: Path,
-) -> Manifest:
+) -> MotionManifest:
     """Write the bundle of the run's best network.
 
     Args:

@@ -9,7 +9,7 @@ from torch import nn
 
 from agent_server.domain.arrays import Float32
 from agent_server.errors import ConfigError
-from agent_server.inference.manifest import Manifest
+from agent_server.inference.manifest import MotionManifest
 from models.evaluation.forecasters import Forecaster
 from models.evaluation.latency import latency_ms
 from models.evaluation.prediction import MM
@@ -35,7 +35,7 @@ PROTOCOLS = {
 
 def export_predictor(
     family: str, runs: Sequence[Path], folder: Path, version: str, data: Path, cache: Path
-) -> Manifest:
+) -> MotionManifest:
     """Write the bundle of the runs' best networks, measured on held-out people and recordings.
 
     Args:

@@ -1,6 +1,6 @@
 """The card of a classifier that was taught gestures by its user."""
 
-from agent_server.inference.manifest import Manifest
+from agent_server.inference.manifest import MotionManifest
 from models.evaluation.readings import PREDICTED
 from models.export.card import head, percent, tail
 
@@ -11,7 +11,7 @@ ROWS = {
 }
 
 
-def taught_card(manifest: Manifest) -> str:
+def taught_card(manifest: MotionManifest) -> str:
     """The card in Markdown."""
     results = manifest.results
     people, decided = results["people"], results["decisions"][PREDICTED]

@@ -11,7 +11,7 @@ import torch
 
 from agent_server.domain.gesture import DISCOMFORTS, HELLO, IDLE
 from agent_server.errors import InvalidInput
-from agent_server.inference.manifest import DataSource, Manifest, read_manifest
+from agent_server.inference.manifest import DataSource, MotionManifest, read_manifest
 from agent_server.synthetic.corpus import subject_names
 from models.data import synthetic
 from models.data.labelled import GestureSet, check_repetitions
@@ -125,7 +125,7 @@ def choose_people(subjects: Sequence[str], held_out: str | None) -> People:
     return People(tuple(others[:-1]), others[-1], test)
 
 
-def teach(taught: GestureSet, lesson: Lesson) -> Manifest:
+def teach(taught: GestureSet, lesson: Lesson) -> MotionManifest:
     """Train on the recordings and write the bundle.
 
     Raises:

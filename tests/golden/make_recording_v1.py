@@ -101,14 +101,14 @@ def append_all(writer: RecordingWriter) -> None:
     writer.append_core(RendererChanged(0, attached=True))
     for index in range(FRAMES):
         stamp = index * PERIOD_NS
-        writer.append_skeleton(body(index, 1))
+        writer.append_input(body(index, 1))
         if index % 10 == 0:
-            writer.append_skeleton(body(index, 2))
+            writer.append_input(body(index, 2))
         if index % 3 == 0:
-            writer.append_affect(AffectSample(stamp, -5.25, 4.5))
+            writer.append_input(AffectSample(stamp, -5.25, 4.5))
         if index == 10:
-            writer.append_scene_event(ObjectChanged(stamp, "window", "open"))
-            writer.append_scene(m.SceneState("working", {"window": "open"}), stamp)
+            writer.append_input(ObjectChanged(stamp, "window", "open"))
+            writer.append_output(m.SceneState("working", {"window": "open"}), stamp)
         if index == 30:
             writer.append_core(WindowSkipped(stamp, index=1))
             writer.append_core(Tick(stamp))
@@ -117,8 +117,8 @@ def append_all(writer: RecordingWriter) -> None:
             decided = message.decision.command
             assert decided is not None
             writer.append_core(WindowDone(decided.issued_ns, index=0))
-            writer.append_decision(message, decided.issued_ns)
-            writer.append_command(
+            writer.append_output(message, decided.issued_ns)
+            writer.append_output(
                 m.CommandMessage(
                     id=decided.id,
                     sequence=decided.sequence,
@@ -130,11 +130,12 @@ def append_all(writer: RecordingWriter) -> None:
                     originating_ns=decided.originating_ns,
                     issued_ns=decided.issued_ns,
                     ttl_ms=decided.ttl_ms,
-                )
+                ),
+                decided.issued_ns,
             )
         if index == 45:
-            writer.append_ack(Ack(stamp, "golden-1", AckStatus.STARTED, step=0))
-            writer.append_ack(Ack(stamp + 1, "golden-1", AckStatus.FAILED, reason="no window"))
+            writer.append_input(Ack(stamp, "golden-1", AckStatus.STARTED, step=0))
+            writer.append_input(Ack(stamp + 1, "golden-1", AckStatus.FAILED, reason="no window"))
     end = FRAMES * PERIOD_NS
     writer.append_core(WindowDone(end, index=2, failure="InferenceError: out of memory"))
     writer.append_core(BodyGone(end, body_id=1))

@@ -28,7 +28,7 @@ def decide():
     def run(name):
         settings = Settings()
         recording = open_recording(STREAMS / f"{name}.mcap")
-        core = Core(name, settings, load_room(settings, models), models.hashes)
+        core = Core(name, settings, load_room(settings, models), models)
         return [json.loads(log_line(decision)) for decision in replay(recording, core, models)]
 
     return run

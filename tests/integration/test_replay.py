@@ -32,7 +32,7 @@ def replayed(path, models=None):
     models = models or fake_models()
     recording = open_recording(path)
     rules = default_rules(models.classifier.labels)
-    core = Core(recording.metadata.session, SETTINGS, rules, models.hashes)
+    core = Core(recording.metadata.session, SETTINGS, rules, models)
     return [log_line(decision) for decision in replay(recording, core, models)]
 
 
@@ -45,9 +45,9 @@ def write(path, events, session="s"):
     with RecordingWriter(path, metadata) as writer:
         for event in sorted(events, key=lambda event: event.originating_ns):
             if isinstance(event, AffectSample):
-                writer.append_affect(event)
+                writer.append_input(event)
             else:
-                writer.append_skeleton(event)
+                writer.append_input(event)
 
 
 def eventful():
@@ -140,7 +140,7 @@ async def test_a_log_that_does_not_fit_its_frames_is_refused(tmp_path):
     path = tmp_path / "odd.mcap"
     with RecordingWriter(path, RecordingMetadata("s", "test")) as writer:
         for one in stream(2):
-            writer.append_skeleton(one)
+            writer.append_input(one)
         writer.append_core(WindowDone(0, 99))
     with pytest.raises(RecordingError, match="window 99"):
         replayed(path)

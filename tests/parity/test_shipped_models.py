@@ -11,7 +11,7 @@ from agent_server.domain.gesture import GESTURES
 from agent_server.inference.manifest import (
     GOLDEN_FILE,
     MODEL_FILE,
-    Manifest,
+    MotionManifest,
     read_manifest,
 )
 from models.evaluation.session import OnnxModel
@@ -21,7 +21,7 @@ ARTIFACTS = Path(__file__).parents[2] / "models" / "artifacts"
 PREDICTOR, CLASSIFIER = "ma_wgan_server", "interformer_server"
 
 
-def load(name: str) -> tuple[Manifest, OnnxModel, np.ndarray, np.ndarray]:
+def load(name: str) -> tuple[MotionManifest, OnnxModel, np.ndarray, np.ndarray]:
     folder = ARTIFACTS / name
     manifest = read_manifest(folder)
     with np.load(folder / GOLDEN_FILE) as golden:

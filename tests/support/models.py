@@ -3,7 +3,7 @@
 from agent_server.domain.motion import SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
-from agent_server.service.worker import Models
+from agent_server.service.models import Models
 
 
 def covers_ears(motion):

@@ -11,7 +11,7 @@ from agent_server.errors import BundleError  # noqa: E402
 from agent_server.inference.manifest import (  # noqa: E402
     GOLDEN_FILE,
     MODEL_FILE,
-    Manifest,
+    MotionManifest,
     read_manifest,
 )
 from models.evaluation.session import OnnxModel  # noqa: E402
@@ -109,9 +109,9 @@ def test_a_bundle_is_checked_and_complete(tmp_path: Path) -> None:
         labels=GESTURES,
         info=INFO,
     )
-    seen: list[Manifest] = []
+    seen: list[MotionManifest] = []
 
-    def card(manifest: Manifest) -> str:
+    def card(manifest: MotionManifest) -> str:
         seen.append(manifest)
         return f"# {manifest.name}\n"
 

@@ -51,7 +51,7 @@ def write(path: Path, frames: int, *labels: tuple[str, float, float], subject: s
             ends = (round(onset * 1e9), round(offset * 1e9))
             writer.append_label(Label(gesture, *ends, subject, None, False), f"tag_{gesture}")
         for index in range(frames):
-            writer.append_skeleton(SkeletonFrame(index * STEP_NS, 3, "core9", pose))
+            writer.append_input(SkeletonFrame(index * STEP_NS, 3, "core9", pose))
 
 
 def test_labels_become_stretches_and_idle_is_none(tmp_path: Path) -> None:

@@ -13,7 +13,9 @@ AFFECT = JSON.encode(m.Affect(1, 0.0, 0.0))
 
 
 def connection(role="sensor", *, greeted=True, max_errors=3):
-    made = c.ServerConnection(role, JSON, max_message_bytes=4096, max_errors=max_errors)
+    made = c.ServerConnection(
+        role, JSON, max_message_bytes=4096, max_image_bytes=9000, max_errors=max_errors
+    )
     if greeted:
         assert isinstance(made.receive(HELLO, 0), c.Greeted)
     return made

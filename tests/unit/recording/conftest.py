@@ -9,6 +9,7 @@ import pytest
 
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.recording.writer import RecordingWriter
+from tests.support.faces import FACES
 
 GOLDEN_DIR = Path(__file__).parents[2] / "golden"
 
@@ -28,12 +29,16 @@ def session() -> ModuleType:
 
 @pytest.fixture
 def write(session: ModuleType, tmp_path: Path) -> Callable[[str], Path]:
-    """Writes the small recording under a name."""
+    """Writes the small recording under a name; with what came after version 1 if asked to."""
 
-    def write_it(name: str) -> Path:
+    def write_it(name: str, *, with_faces: bool = False) -> Path:
         path = tmp_path / name
         with RecordingWriter(path, session.METADATA) as writer:
             session.append_all(writer)
+            for value in FACES if with_faces else ():
+                writer.append_input(value)
+            if with_faces:
+                writer.append_image(b"\xff\xd8 jpeg", 3_000_000_007)
         return path
 
     return write_it

@@ -335,11 +335,11 @@ def test_what_was_flushed_survives_a_crash(
     path = tmp_path / "a.mcap"
     writer = RecordingWriter(path, METADATA)
     for frame in session_frames[:3]:
-        writer.append_skeleton(frame)
+        writer.append_input(frame)
     before = path.stat().st_size
     writer.flush()
     assert path.stat().st_size > before
-    writer.append_skeleton(session_frames[3])
+    writer.append_input(session_frames[3])
     crashed = cut(path, path.stat().st_size)
     assert len(saved(crashed)) == 3
     writer.close()

@@ -35,16 +35,16 @@ def test_a_full_disk_is_loud_and_what_was_written_is_saved(
     path = tmp_path / "a.mcap"
     writer = RecordingWriter(path, METADATA)
     for frame in session_frames[:20]:
-        writer.append_skeleton(frame)
+        writer.append_input(frame)
     writer.flush()
     whole = path.stat().st_size
     with full_disk(whole + 200):
-        writer.append_skeleton(session_frames[20])
+        writer.append_input(session_frames[20])
         with pytest.raises(RecordingError, match=r"a\.mcap cannot be written.*recover it"):
             writer.flush()
     assert path.stat().st_size == whole
     with pytest.raises(RecordingError, match="has failed before"):
-        writer.append_skeleton(session_frames[21])
+        writer.append_input(session_frames[21])
     writer.close()
     with pytest.raises(RecordingError, match="truncated"):
         open_recording(path)
@@ -58,7 +58,7 @@ def test_a_disk_that_is_full_at_the_end_is_loud_too(
 ) -> None:
     path = tmp_path / "a.mcap"
     writer = RecordingWriter(path, METADATA)
-    writer.append_skeleton(session_frames[0])
+    writer.append_input(session_frames[0])
     writer.flush()
     with (
         full_disk(path.stat().st_size + 100),
@@ -78,7 +78,7 @@ def test_a_failure_within_the_block_comes_through(
         RecordingWriter(path, METADATA) as writer,
     ):
         for frame in session_frames:
-            writer.append_skeleton(frame)
+            writer.append_input(frame)
 
 
 def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
@@ -94,7 +94,7 @@ def test_an_error_in_the_block_still_finishes_the_file(
         pytest.raises(KeyError),
         RecordingWriter(path, METADATA) as writer,
     ):
-        writer.append_skeleton(session_frames[0])
+        writer.append_input(session_frames[0])
         raise KeyError
     assert open_recording(path).summary.records == 1
 

@@ -11,6 +11,7 @@ from mcap.stream_reader import StreamReader
 
 from agent_server.domain.affect import AffectSample
 from agent_server.domain.command import Ack, AckStatus
+from agent_server.domain.face import FaceBlendshapes, FaceLandmarks
 from agent_server.domain.label import Label
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.skeleton import SkeletonFrame
@@ -18,9 +19,17 @@ from agent_server.domain.stamp import MAX_STAMP_NS, NS_PER_MS
 from agent_server.errors import RecordingError
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.reader import open_recording
-from agent_server.recording.records import BodyGone, CoreRecord, LabelRecord, Tick, WindowDone
+from agent_server.recording.records import (
+    BodyGone,
+    CompressedImage,
+    CoreRecord,
+    LabelRecord,
+    Tick,
+    WindowDone,
+)
 from agent_server.recording.sink import CHUNK_BYTES, CHUNK_NS
 from agent_server.recording.writer import RecordingWriter
+from tests.support.faces import FACES
 
 METADATA = RecordingMetadata(session="s", server_version="0")
 coordinate = st.floats(-50, 50, width=32).map(lambda x: float(np.float32(round(x, 4))))
@@ -52,7 +61,7 @@ def test_a_frame_comes_back_to_the_bit(
     path = tmp_path_factory.mktemp("bits") / "a.mcap"
     frame = SkeletonFrame(stamp_ns, body_id, "core9", np.array(joints, dtype=np.float32))
     with RecordingWriter(path, METADATA) as writer:
-        writer.append_skeleton(frame)
+        writer.append_input(frame)
     (back,) = open_recording(path).events()
     assert isinstance(back, SkeletonFrame)
     assert (back.originating_ns, back.body_id, back.format) == (stamp_ns, body_id, "core9")
@@ -66,15 +75,34 @@ def test_raw_inputs_come_back_as_they_entered(tmp_path: Path) -> None:
     ack = Ack(9, "s-1", AckStatus.FAILED, step=2, reason="no such window")
     event = ObjectChanged(5, "window", "open")
     with RecordingWriter(path, METADATA) as writer:
-        writer.append_affect(affect)
-        writer.append_ack(ack)
+        writer.append_input(affect)
+        writer.append_input(ack)
         writer.append_core(Tick(8))
-        writer.append_scene_event(event)
+        writer.append_input(event)
     recording = open_recording(path)
     assert list(recording.events()) == [affect, ack, event]
     assert list(recording.entries()) == [affect, ack, Tick(8), event]
     assert [record.sequence for record in recording] == [0, 1, 2, 3]
     assert [record.stamp_ns for record in recording] == [7, 9, 8, 5]
+
+
+def test_faces_gaze_and_calibrations_come_back_as_they_entered(tmp_path: Path) -> None:
+    path = tmp_path / "a.mcap"
+    with RecordingWriter(path, METADATA) as writer:
+        for value in FACES:
+            writer.append_input(value)
+        writer.append_image(b"\xff\xd8 jpeg", 3_000_000_007)
+    recording = open_recording(path)
+    points, shapes, *rest = recording.events()
+    assert isinstance(points, FaceLandmarks)
+    assert np.array_equal(points.points, FACES[0].points)
+    assert (points.width, points.height, points.layout) == (640, 480, "dlib68")
+    assert isinstance(shapes, FaceBlendshapes)
+    assert np.array_equal(shapes.values, FACES[1].values)
+    assert rest == list(FACES[2:])
+    image = next(recording.records(("/image",))).message
+    assert isinstance(image, CompressedImage)
+    assert (image.data, image.timestamp.sec, image.timestamp.nsec) == (b"\xff\xd8 jpeg", 3, 7)
 
 
 def test_labels_come_sorted_and_keep_their_tags(tmp_path: Path) -> None:
@@ -136,7 +164,7 @@ def test_a_chunk_closes_after_half_a_second_of_stamps(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     with RecordingWriter(path, METADATA) as writer:
         for index in range(60):
-            writer.append_skeleton(frame_at(index * 40 * NS_PER_MS))
+            writer.append_input(frame_at(index * 40 * NS_PER_MS))
     spans = [chunk.message_end_time - chunk.message_start_time for chunk in chunks(path)]
     assert len(spans) == 5
     assert all(span < CHUNK_NS + 40 * NS_PER_MS for span in spans)
@@ -147,7 +175,7 @@ def test_a_chunk_closes_at_32_kib(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     with RecordingWriter(path, METADATA) as writer:
         for _ in range(600):
-            writer.append_skeleton(frame_at(0))
+            writer.append_input(frame_at(0))
     sizes = [chunk.uncompressed_size for chunk in chunks(path)]
     assert len(sizes) > 2
     assert all(CHUNK_BYTES <= size < CHUNK_BYTES + 2048 for size in sizes[:-1])
@@ -170,8 +198,8 @@ def test_an_existing_recording_is_not_overwritten(write: Callable[[str], Path]) 
 def test_a_stamp_outside_the_session_is_refused(tmp_path: Path) -> None:
     with RecordingWriter(tmp_path / "a.mcap", METADATA) as writer:
         with pytest.raises(RecordingError, match="stamp_ns is -1"):
-            writer.append_skeleton(frame_at(-1))
-        writer.append_skeleton(frame_at(0))
+            writer.append_input(frame_at(-1))
+        writer.append_input(frame_at(0))
     assert open_recording(tmp_path / "a.mcap").summary.records == 1
 
 

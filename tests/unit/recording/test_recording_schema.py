@@ -24,6 +24,10 @@ def records_with_schemas(path: Path) -> list[tuple[str, dict[str, Any], Any]]:
         return found
 
 
+def written(write: Callable[..., Path]) -> list[tuple[str, dict[str, Any], Any]]:
+    return records_with_schemas(write("a.mcap", with_faces=True))
+
+
 def refused(schema: dict[str, Any], place: str) -> list[str]:
     """What a viewer gives up on that knows objects, scalars, and arrays of these, no more."""
     if schema.get("type") != "object" or "properties" not in schema:
@@ -41,13 +45,13 @@ def refused(schema: dict[str, Any], place: str) -> list[str]:
 
 
 def test_every_topic_has_a_schema_that_simple_viewers_take(write: Callable[[str], Path]) -> None:
-    schemas = {topic: schema for topic, schema, _ in records_with_schemas(write("a.mcap"))}
+    schemas = {topic: schema for topic, schema, _ in written(write)}
     assert schemas.keys() == TOPICS.keys()
     assert [place for topic, schema in schemas.items() for place in refused(schema, topic)] == []
 
 
 def test_what_simple_viewers_refuse_is_still_described(write: Callable[[str], Path]) -> None:
-    schemas = {topic: schema for topic, schema, _ in records_with_schemas(write("a.mcap"))}
+    schemas = {topic: schema for topic, schema, _ in written(write)}
     joints = schemas["/skeleton"]["patternProperties"]["^joints$"]
     assert joints["items"]["minItems"] == 4
     assert "joints" in schemas["/skeleton"]["required"]
@@ -56,7 +60,7 @@ def test_what_simple_viewers_refuse_is_still_described(write: Callable[[str], Pa
 
 
 def test_the_core_log_is_one_object_of_several_kinds(write: Callable[[str], Path]) -> None:
-    schemas = {topic: schema for topic, schema, _ in records_with_schemas(write("a.mcap"))}
+    schemas = {topic: schema for topic, schema, _ in written(write)}
     core = schemas["/core"]
     assert core["required"] == ["kind", "stamp_ns"]
     assert core["properties"]["kind"]["enum"] == [
@@ -72,7 +76,7 @@ def test_the_core_log_is_one_object_of_several_kinds(write: Callable[[str], Path
 
 def test_every_record_fits_its_schema(write: Callable[[str], Path]) -> None:
     jsonschema = pytest.importorskip("jsonschema", reason="jsonschema is not installed")
-    for topic, schema, record in records_with_schemas(write("a.mcap")):
+    for topic, schema, record in written(write):
         validator = jsonschema.Draft202012Validator(schema)
         assert not list(validator.iter_errors(record)), topic
         required = next(iter(schema["required"]))

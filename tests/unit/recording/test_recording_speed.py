@@ -38,7 +38,7 @@ def test_a_kinect_is_written_and_read_far_faster_than_it_sends(tmp_path: Path) -
     def write(attempt: int) -> None:
         with RecordingWriter(tmp_path / f"{attempt}.mcap", RecordingMetadata("s", "0")) as writer:
             for frame in frames:
-                writer.append_skeleton(frame)
+                writer.append_input(frame)
 
     def read(attempt: int) -> None:
         assert sum(1 for _ in open_recording(tmp_path / f"{attempt}.mcap")) == COUNT

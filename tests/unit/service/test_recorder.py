@@ -21,8 +21,8 @@ def test_what_was_appended_is_in_the_file_in_its_order(tmp_path):
     made = recorder(tmp_path, "lab", fake_models(), clock)
     frames = stream(3)
     for frame in frames:
-        made.append_skeleton(frame)
-        made.append_affect(AffectSample(frame.originating_ns, -1.0, 2.0))
+        made.append_input(frame)
+        made.append_input(AffectSample(frame.originating_ns, -1.0, 2.0))
     made.append_core(Tick(4_000_000_000))
     made.close()
     recording = open_recording(tmp_path / "lab-1970-01-01T000005000.mcap")
@@ -35,7 +35,7 @@ def test_what_was_appended_is_in_the_file_in_its_order(tmp_path):
 def test_a_folder_that_is_not_there_is_reported_and_harmless(tmp_path, caplog):
     made = Recorder(tmp_path / "missing" / "a.mcap", METADATA)
     made._thread.join(5)
-    made.append_skeleton(stream(1)[0])
+    made.append_input(stream(1)[0])
     made.close()
     assert caplog.text.count("recording stopped") == 1
 
@@ -49,12 +49,12 @@ def test_a_disk_that_is_too_slow_is_given_up_and_what_was_written_stays(
     class SlowWriter(RecordingWriter):
         def append_skeleton(self, frame):
             may_write.wait(5)
-            super().append_skeleton(frame)
+            super().append_input(frame)
 
     monkeypatch.setattr(module, "RecordingWriter", SlowWriter)
     made = Recorder(tmp_path / "slow.mcap", METADATA)
     for frame in stream(1):
-        made.append_skeleton(frame)
+        made.append_input(frame)
     assert "too slow" in caplog.text
     may_write.set()
     made.close()

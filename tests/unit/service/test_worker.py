@@ -10,7 +10,8 @@ import pytest
 from agent_server.domain.motion import Quality, Window
 from agent_server.errors import InferenceError
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
-from agent_server.service.worker import MAX_BATCH, InferenceWorker, Models, infer
+from agent_server.service.models import Models
+from agent_server.service.worker import MAX_BATCH, InferenceWorker, infer
 from tests.support.models import fake_models
 
 

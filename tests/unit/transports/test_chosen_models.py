@@ -16,8 +16,8 @@ from agent_server.inference.fake import LastFramePredictor, RuleClassifier
 from agent_server.inference.manifest import read_manifest, write_manifest
 from agent_server.scene import rules as scene_rules
 from agent_server.service.core import Core
+from agent_server.service.models import Models
 from agent_server.service.replay import replay_stream
-from agent_server.service.worker import Models
 from agent_server.transports.server import CLASSIFIER, PREDICTOR, load_models, load_room
 from tests.support.bodies import stream
 from tests.support.models import covers_ears
@@ -114,7 +114,7 @@ def decisions_on_raised_hands(settings):
         lambda motion: "dim" if covers_ears(motion) == "loud" else "idle", (*GESTURES, "dim")
     )
     models = Models(LastFramePredictor(), classifier)
-    core = Core("s", settings, load_room(settings, models), models.hashes)
+    core = Core("s", settings, load_room(settings, models), models)
     return list(replay_stream(core, models, stream(6, hands_up=lambda t: 2 <= t < 4)))
 
 

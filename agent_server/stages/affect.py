@@ -1,0 +1,127 @@
+"""Valence and arousal from faces: an estimate a face, averaged over a second.
+
+The average is the thesis's (25 frames, chapter 5), by time instead of frames, and weighted by
+the inverse of each estimate's variance. It lags behind the face by about half its length, which
+each sample states. What a person's neutral face comes to can be taken off (calibration).
+"""
+
+from collections import deque
+from collections.abc import Mapping
+
+import numpy as np
+
+from agent_server.config import FaceSettings
+from agent_server.domain.affect import AFFECT_LIMIT, AffectSample, Calibrated, Calibration
+from agent_server.domain.arrays import Float32, Float64
+from agent_server.domain.face import Face, FaceBlendshapes, FaceLayout
+from agent_server.domain.model import AffectModel
+from agent_server.domain.stamp import NS_PER_MS, NS_PER_S
+from agent_server.errors import InvalidInput
+from agent_server.face.features import blendshape_features, mesh_features, points68_features
+
+MIN_CALIBRATION_FACES = 5
+DECIMALS = 3
+
+
+class AffectEstimator:
+    """Reads one person's face.
+
+    Args:
+        models: Input kind (``mesh``, ``points68``, ``blendshapes``) -> its model.
+        settings: How long to average.
+    """
+
+    def __init__(self, models: Mapping[str, AffectModel], settings: FaceSettings) -> None:
+        self._models = models
+        self._window_ns = settings.window_ms * NS_PER_MS
+        self._source = ""
+        self._recent: deque[tuple[int, Float64]] = deque()
+        self._neutral = np.zeros(2)
+        self._calibration: Calibration | None = None
+        self._neutral_faces: list[Float64] = []
+
+    def push(self, face: Face) -> tuple[AffectSample, Calibrated | None]:
+        """Take the next face; faces come in the order of their capture.
+
+        Returns:
+            Affect at the time of the face, and what a calibration came to that ended with it.
+
+        Raises:
+            InvalidInput: If there is no model for it; nothing has changed then.
+            InferenceError: If the model fails; nothing has changed then.
+        """
+        now_ns = face.originating_ns
+        source, features = _features(face)
+        model = self._models.get(source)
+        if model is None:
+            raise InvalidInput(
+                f"this server has no model that reads {source}: send valence and arousal",
+                field="type",
+                code="no_model",
+            )
+        # Valence, arousal and their standard deviations.
+        estimate = model.estimate(features[None])[0].astype(np.float64) * AFFECT_LIMIT
+        if source != self._source:
+            self._source = source
+            self._recent.clear()
+        self._recent.append((now_ns, estimate))
+        while now_ns - self._recent[0][0] >= self._window_ns and len(self._recent) > 1:
+            self._recent.popleft()
+        return self._average(now_ns), self._calibrated(now_ns, estimate[:2])
+
+    def calibrate(self, calibration: Calibration) -> Calibrated | None:
+        """Begin a calibration, or take over what is known; gives the latter's result."""
+        if calibration.neutral is None:
+            self._calibration = calibration
+            self._neutral_faces = []
+            return None
+        self._neutral = np.array(calibration.neutral)
+        self._calibration = None
+        return self._state(0, is_done=True)
+
+    def _average(self, now_ns: int) -> AffectSample:
+        """Weighted mean of the window.
+
+        The deviations are those of a single face: the errors of neighbours are one person's,
+        and do not average out.
+        """
+        values = np.array([value for _, value in self._recent])  # (N, 4)
+        ages_ns = now_ns - np.array([stamp for stamp, _ in self._recent], dtype=np.float64)
+        weights = 1.0 / np.square(values[:, 2:])
+        weights /= weights.sum(axis=0)
+        mean = (weights * values[:, :2]).sum(axis=0) - self._neutral
+        spread = np.sqrt((weights * np.square(values[:, 2:])).sum(axis=0))
+        valence, arousal = np.clip(mean, -AFFECT_LIMIT, AFFECT_LIMIT).round(DECIMALS).tolist()
+        valence_sd, arousal_sd = spread.round(DECIMALS).tolist()
+        delay_ms = float(weights.mean(axis=1) @ ages_ns) / NS_PER_MS
+        return AffectSample(
+            now_ns, valence, arousal, valence_sd, arousal_sd, self._source, round(delay_ms, 1)
+        )
+
+    def _calibrated(self, now_ns: int, estimate: Float64) -> Calibrated | None:
+        calibration = self._calibration
+        if calibration is None or calibration.seconds is None:
+            return None
+        end_ns = calibration.originating_ns + round(calibration.seconds * NS_PER_S)
+        if calibration.originating_ns <= now_ns <= end_ns:
+            self._neutral_faces.append(estimate)
+        if now_ns < end_ns:
+            return None
+        self._calibration = None
+        count = len(self._neutral_faces)
+        if count < MIN_CALIBRATION_FACES:
+            return self._state(count, is_done=False)
+        self._neutral = np.median(self._neutral_faces, axis=0).round(DECIMALS)
+        return self._state(count, is_done=True)
+
+    def _state(self, faces: int, *, is_done: bool) -> Calibrated:
+        valence, arousal = self._neutral.tolist()
+        return Calibrated(valence, arousal, faces, is_done)
+
+
+def _features(face: Face) -> tuple[str, Float32]:
+    if isinstance(face, FaceBlendshapes):
+        return "blendshapes", blendshape_features(face.values)
+    if face.layout is FaceLayout.DLIB68:
+        return "points68", points68_features(face.points)
+    return "mesh", mesh_features(face.points)

@@ -1,0 +1,1 @@
+"""From tflite files with float weights to ONNX."""
