@@ -1,0 +1,87 @@
+"""Configurations of the affect models."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from agent_server.errors import ConfigError
+
+Source = Literal["mesh", "points68", "blendshapes"]
+SOURCES: tuple[Source, ...] = get_args(Source)
+
+
+@dataclass(frozen=True, slots=True)
+class AffectConfig:
+    """Shape and training of a model.
+
+    Attributes:
+        source: What a face is given as.
+        hidden: Units of each hidden layer.
+        dropout: Share of units left out in training.
+        members: Networks whose estimates are averaged; their spread is part of the uncertainty.
+        components: Principal components that the features are reduced to; 0 keeps them all.
+        symmetric: Average the estimates of a face and of its mirror image.
+        varied: Train on all views of a picture, not only on the picture as it is.
+        epochs: Passes through the views.
+        batch: Faces an update.
+        rate: Highest learning rate, of a cycle up and down.
+        weight_decay: Of AdamW.
+        noise: Standard deviation of what is added to the standardised features.
+        mixup: Parameter of the Beta distribution by which two faces are mixed; 0 mixes none.
+    """
+
+    source: Source
+    hidden: tuple[int, ...] = (256, 256)
+    dropout: float = 0.3
+    members: int = 6
+    components: int = 160
+    symmetric: bool = True
+    varied: bool = True
+    epochs: int = 14
+    batch: int = 128
+    rate: float = 3e-3
+    weight_decay: float = 1e-2
+    noise: float = 0.02
+    mixup: float = 0.4
+
+    def __post_init__(self) -> None:
+        if self.members < 1:
+            raise ConfigError(f"members is {self.members}: at least one network is needed")
+        if not 0 <= self.dropout < 1:
+            raise ConfigError(f"dropout is {self.dropout}: it lies in 0..1")
+
+
+def named(name: str, source: Source) -> AffectConfig:
+    """The configuration ``name`` for a source.
+
+    ``paper`` is the thesis's network: four dense layers with dropout between them, on landmarks
+    as they are seen. It gives no sizes; these are ours.
+
+    Raises:
+        ConfigError: If there is none of that name.
+    """
+    match name:
+        case "default":
+            return _DEFAULTS[source]
+        case "paper":
+            return AffectConfig(
+                source,
+                hidden=(256, 128, 64),
+                dropout=0.5,
+                members=1,
+                components=0,
+                symmetric=False,
+                varied=False,
+                epochs=120,
+                rate=1e-3,
+                weight_decay=0.0,
+                noise=0.0,
+                mixup=0.0,
+            )
+    raise ConfigError(f"there is no configuration {name!r}: choose default or paper")
+
+
+_DEFAULTS = {
+    "mesh": AffectConfig("mesh"),
+    "points68": AffectConfig("points68", components=0),
+    "blendshapes": AffectConfig("blendshapes", components=0, noise=0.05),
+}
