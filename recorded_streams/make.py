@@ -13,13 +13,7 @@ from pathlib import Path
 
 from agent_server import __version__
 from agent_server.config import Settings
-from agent_server.domain.affect import AffectSample
-from agent_server.protocol.convert import (
-    affect_from_message,
-    affect_to_message,
-    skeleton_from_message,
-    skeleton_to_message,
-)
+from agent_server.protocol.inputs import input_from_message, input_to_message
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.reader import open_recording
 from agent_server.recording.writer import RecordingWriter
@@ -49,12 +43,10 @@ def write_stream(scenario: Scenario, path: Path) -> None:
         ]
         for event in session.events:
             # As a live server takes them in: checked and rounded.
-            if isinstance(event, AffectSample):
-                sample = affect_from_message(affect_to_message(event))
-                appends.append((event.originating_ns, partial(writer.append_input, sample)))
-            else:
-                frame = skeleton_from_message(skeleton_to_message(event))
-                appends.append((event.originating_ns, partial(writer.append_input, frame)))
+            taken = input_from_message(input_to_message(event))
+            if taken is None:
+                raise AssertionError(f"{event} is nothing that a sensor sends")
+            appends.append((event.originating_ns, partial(writer.append_input, taken)))
         for _, append in sorted(appends, key=lambda item: item[0]):
             append()
 

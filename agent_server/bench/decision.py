@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from agent_server.bench.figures import Percentiles, percentiles
 from agent_server.bench.stream import recorded_events
 from agent_server.config import Settings
-from agent_server.domain.affect import AffectSample
+from agent_server.domain.face import FaceBlendshapes, FaceLandmarks
+from agent_server.domain.inputs import SensorInput
 from agent_server.domain.motion import BodyLost
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.scene.rulebook import Rules
@@ -15,8 +16,6 @@ from agent_server.service.core import Core
 from agent_server.service.models import Models
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import predict
-
-Event = SkeletonFrame | AffectSample
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +27,8 @@ class DecisionResult:
         p95_ms: Their 95th percentile.
         p99_ms: Their 99th percentile.
         stages: Percentiles of ``window`` (ingest of the last frame and the window), ``predict``,
-            ``classify`` and ``decide`` (gate, hysteresis and room).
+            ``classify`` and ``decide`` (gate, hysteresis and room); and of ``affect``, which reads
+            a face when one comes.
         decisions: How many were measured.
     """
 
@@ -57,11 +57,16 @@ def measure_decisions(models: Models, rules: Rules, rounds: int) -> DecisionResu
     )
 
 
-def _run(models: Models, rules: Rules, events: list[Event], times: dict[str, list[float]]) -> None:
+def _run(
+    models: Models, rules: Rules, events: list[SensorInput], times: dict[str, list[float]]
+) -> None:
     core = Core("bench", Settings(), rules, models)
     for event in events:
-        if isinstance(event, AffectSample):
-            core.feel(event)
+        if isinstance(event, FaceLandmarks | FaceBlendshapes):
+            began = time.perf_counter_ns()
+            core.look(event)
+            times["affect"].append((time.perf_counter_ns() - began) / 1e6)
+        if not isinstance(event, SkeletonFrame):
             continue
         marks = [time.perf_counter_ns()]
         jobs = core.observe(event)

@@ -37,16 +37,28 @@ def mesh_features(points: Float32) -> Float32:
     Returns:
         Shape (..., 936): x and y of the first 468 points, seen from the front.
     """
-    mesh = np.asarray(points[..., :SHARED_POINTS, :], dtype=np.float64)
+    front, size, _ = front_view(points[..., :SHARED_POINTS, :])
+    return _flat(front[..., :2] / size)
+
+
+def front_view(points: Float32) -> tuple[Float64, Float64, Float64]:
+    """Meshes turned to the front and centred.
+
+    Args:
+        points: Shape (..., N, 3) with N at least 468, in any unit, x right, y down.
+
+    Returns:
+        Points of the same shape; the size (..., 1, 1) of each head, the root mean square distance
+        of its rigid points; and its axes (..., 3, 3), the rows, in the given space.
+    """
+    mesh = np.asarray(points, dtype=np.float64)
     rigid = mesh[..., _RIGID_MESH, :]
     centre = rigid.mean(axis=-2, keepdims=True)
-    rigid = rigid - centre
     across = mesh[..., (362, 263), :].mean(axis=-2) - mesh[..., (33, 133), :].mean(axis=-2)
     down = mesh[..., 2, :] - mesh[..., 10, :]
-    axes = _frame(across, down)  # (..., 3, 3), rows are the axes of the head
-    front = (mesh - centre) @ np.swapaxes(axes, -1, -2)
-    size = np.sqrt(np.square(rigid).sum(axis=-1).mean(axis=-1))[..., None, None]
-    return _flat(front[..., :2] / size)
+    axes = _frame(across, down)
+    size = np.sqrt(np.square(rigid - centre).sum(axis=-1).mean(axis=-1))[..., None, None]
+    return (mesh - centre) @ np.swapaxes(axes, -1, -2), size, axes
 
 
 def points68_features(points: Float32) -> Float32:
@@ -74,7 +86,9 @@ def points68_features(points: Float32) -> Float32:
 
 
 def blendshape_features(values: Float32) -> Float32:
-    """Features of blendshapes: the 51 that every source has, as they are.
+    """Features of blendshapes: the square roots of the 51 that every source has.
+
+    Most lie near 0, where small differences mean much.
 
     Args:
         values: Shape (..., 52), in ARKit's order.
@@ -82,7 +96,7 @@ def blendshape_features(values: Float32) -> Float32:
     Returns:
         Shape (..., 51).
     """
-    return np.asarray(values[..., :_SHAPES], dtype=np.float32)
+    return np.sqrt(np.asarray(values[..., :_SHAPES], dtype=np.float32))
 
 
 def _frame(across: Float64, down: Float64) -> Float64:

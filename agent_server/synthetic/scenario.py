@@ -1,16 +1,19 @@
 """Whole sessions with ground truth: frames, affect and labels of people in front of a sensor."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from agent_server.domain.affect import AffectSample
+from agent_server.domain.face import Face
 from agent_server.domain.gesture import HELLO, IDLE
 from agent_server.domain.label import Label
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import to_ns
 from agent_server.errors import ConfigError
+from agent_server.synthetic.face import FaceKind, SyntheticFace
 from agent_server.synthetic.mood import Expression, Look, affect_track
 from agent_server.synthetic.passer_by import walk_through
 from agent_server.synthetic.person import Person, Placement
@@ -18,7 +21,8 @@ from agent_server.synthetic.script import Script
 from agent_server.synthetic.sensors import KINECT_V1, KINECT_V2, Sensor, observe_frames
 from agent_server.synthetic.timeline import Stretch, Timeline
 
-Face = Literal["expected", "none"]
+Sight = Literal["expected", "none"]
+"""What a sensor's hello says of the face."""
 BODY_ID = 3
 PASSER_BY_ID = 5
 LATE_REACTION_S = 2.0
@@ -68,7 +72,9 @@ class Scenario:
         sensor: Who looks on.
         duration_s: Length of the session.
         parts: Gestures in order of time; idle motion fills the rest.
-        face: ``none`` for a headset, which sends no affect.
+        face: ``none`` for a headset that hides the face, of which nothing is sent then.
+        face_as: How the face is sent: as landmarks or blendshapes, or as ``affect``, which some
+            other program has read.
         seated: Whether the person sits.
         lively: Whether the idle motion has hard negatives; otherwise the hands stay at rest.
         dropouts_s: Starts and lengths of gaps without frames.
@@ -84,7 +90,8 @@ class Scenario:
     sensor: Sensor
     duration_s: float
     parts: tuple[Part, ...] = ()
-    face: Face = "expected"
+    face: Sight = "expected"
+    face_as: FaceKind | Literal["affect"] = "mesh478"
     seated: bool = False
     lively: bool = False
     dropouts_s: tuple[tuple[float, float], ...] = ()
@@ -109,16 +116,16 @@ class Session:
     """What a scenario comes to.
 
     Attributes:
-        events: Frames and affect samples, ascending by ``originating_ns``.
+        events: Frames and faces or affect, ascending by ``originating_ns``.
         labels: Ground truth, ascending by onset; idle stretches are quiet.
         format: Joint table of the frames.
         face: What the sensor's hello says of the face.
     """
 
-    events: list[SkeletonFrame | AffectSample]
+    events: list[SkeletonFrame | Face | AffectSample]
     labels: list[Label]
     format: str
-    face: Face
+    face: Sight
 
 
 def play(scenario: Scenario) -> Session:
@@ -151,7 +158,7 @@ def play(scenario: Scenario) -> Session:
     for start_s in scenario.passers_by_s:
         frames += _passer_by(rng, scenario, place, start_s)
     gaps = [(to_ns(start), to_ns(start + length)) for start, length in scenario.dropouts_s]
-    events: list[SkeletonFrame | AffectSample] = [
+    events: list[SkeletonFrame | Face | AffectSample] = [
         frame for frame in frames if not any(a <= frame.originating_ns < b for a, b in gaps)
     ]
     if scenario.face == "expected":
@@ -159,10 +166,18 @@ def play(scenario: Scenario) -> Session:
             Look(script.onset_s, script.offset_s, part.expression)
             for part, script in zip(scenario.parts, scripts, strict=True)
         ]
-        events += affect_track(rng, looks, scenario.duration_s)
+        events += _faces(scenario, affect_track(rng, looks, scenario.duration_s))
     events.sort(key=lambda event: event.originating_ns)
     labels = _labels(scenario, scripts, person.subject)
     return Session(events, labels, frames[0].format, scenario.face)
+
+
+def _faces(scenario: Scenario, moods: list[AffectSample]) -> Sequence[Face | AffectSample]:
+    """The moods as the scenario sends them; faces vary apart from everything else."""
+    if scenario.face_as == "affect":
+        return moods
+    person = SyntheticFace(np.random.default_rng([scenario.seed, 29]))
+    return [person.show(mood, scenario.face_as) for mood in moods]
 
 
 def _placement(rng: np.random.Generator, scenario: Scenario) -> Placement:
@@ -214,7 +229,7 @@ def _labels(scenario: Scenario, scripts: list[Script], subject: str) -> list[Lab
     return [label for label in labels if label.offset_ns > label.onset_ns]
 
 
-def _expected(part: Part, face: Face, room: dict[str, str]) -> str | None:
+def _expected(part: Part, face: Sight, room: dict[str, str]) -> str | None:
     """The reaction to a gesture, which changes the room; None where there is none."""
     if part.gesture == HELLO:
         return GREETING
@@ -245,6 +260,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=2,
         sensor=KINECT_V2,
         duration_s=38.0,
+        face_as="dlib68",
         seated=True,
         parts=(
             Part("cold", "upper_arms", 4.0),
@@ -258,6 +274,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=3,
         sensor=KINECT_V2,
         duration_s=26.0,
+        face_as="mesh468",
         parts=(Part("loud", "palms", 4.0), Part("loud", "clutch", 16.0)),
     ),
     Scenario(
@@ -266,6 +283,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=24,
         sensor=KINECT_V2,
         duration_s=26.0,
+        face_as="blendshapes",
         seated=True,
         parts=(Part("smell", "pinch", 4.0), Part("smell", "mouth_both", 16.0)),
     ),
@@ -275,6 +293,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=5,
         sensor=KINECT_V1,
         duration_s=26.0,
+        face_as="affect",
         parts=(Part("bright", "eyes_both", 4.0), Part("bright", "visor", 16.0)),
     ),
     Scenario(
@@ -283,6 +302,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=6,
         sensor=KINECT_V1,
         duration_s=26.0,
+        face_as="affect",
         parts=(
             Part("hello", "beside_head", 4.0, "neutral"),
             Part("hello", "both", 16.0, "neutral"),
@@ -317,6 +337,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=9,
         sensor=KINECT_V2,
         duration_s=44.0,
+        face_as="dlib68",
         parts=(
             Part("loud", "palms", 5.0),
             Part("bright", "eyes_both", 19.0),
@@ -331,6 +352,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=10,
         sensor=KINECT_V2,
         duration_s=720.0,
+        face_as="blendshapes",
         lively=True,
     ),
     Scenario(

@@ -18,7 +18,6 @@ class AffectConfig:
         hidden: Units of each hidden layer.
         dropout: Share of units left out in training.
         members: Networks whose estimates are averaged; their spread is part of the uncertainty.
-        components: Principal components that the features are reduced to; 0 keeps them all.
         symmetric: Average the estimates of a face and of its mirror image.
         varied: Train on all views of a picture, not only on the picture as it is.
         epochs: Passes through the views.
@@ -30,13 +29,12 @@ class AffectConfig:
     """
 
     source: Source
-    hidden: tuple[int, ...] = (256, 256)
+    hidden: tuple[int, ...] = (256, 128)
     dropout: float = 0.3
-    members: int = 6
-    components: int = 160
+    members: int = 4
     symmetric: bool = True
     varied: bool = True
-    epochs: int = 14
+    epochs: int = 12
     batch: int = 128
     rate: float = 3e-3
     weight_decay: float = 1e-2
@@ -68,7 +66,6 @@ def named(name: str, source: Source) -> AffectConfig:
                 hidden=(256, 128, 64),
                 dropout=0.5,
                 members=1,
-                components=0,
                 symmetric=False,
                 varied=False,
                 epochs=120,
@@ -81,7 +78,7 @@ def named(name: str, source: Source) -> AffectConfig:
 
 
 _DEFAULTS = {
-    "mesh": AffectConfig("mesh"),
-    "points68": AffectConfig("points68", components=0),
-    "blendshapes": AffectConfig("blendshapes", components=0, noise=0.05),
+    "mesh": AffectConfig("mesh", hidden=(384, 192), members=3, epochs=14),
+    "points68": AffectConfig("points68", hidden=(384, 192), epochs=14, noise=0.05),
+    "blendshapes": AffectConfig("blendshapes", epochs=24, noise=0.05),
 }

@@ -1,5 +1,6 @@
 """Features and labels to train on, for each way in which a face is given."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,10 +9,16 @@ from scipy.optimize import linear_sum_assignment
 
 from agent_server.domain.arrays import Float32
 from agent_server.domain.face import ARKIT_BLENDSHAPES
-from agent_server.face.features import blendshape_features, mesh_features, points68_features
+from agent_server.face.features import (
+    SHARED_POINTS,
+    blendshape_features,
+    mesh_features,
+    points68_features,
+)
 from agent_server.face.layouts import MIRROR_DLIB68, to_dlib68
 from models.affect.config import Source
 from models.affect.views import MIRRORED, PLAIN, Views
+from models.data.afew_va import AfewVa
 
 Indices = NDArray[np.int64]
 
@@ -37,36 +44,64 @@ class FaceFeatures:
         features: Shape (N, V, D): the views of each face, the plain one first.
         found: Shape (N, V): whether a view shows a face at all.
         affect: Shape (N, 2): valence and arousal on [-1, 1].
+        people: Shape (N,): a number for each person; validation keeps a person's faces together.
         mirror: What a mirrored face does to the features.
     """
 
     features: Float32
     found: NDArray[np.bool_]
     affect: Float32
+    people: Indices
     mirror: Mirror
 
     def take(self, indices: Indices) -> "FaceFeatures":
         """Some of the faces."""
         return FaceFeatures(
-            self.features[indices], self.found[indices], self.affect[indices], self.mirror
+            self.features[indices],
+            self.found[indices],
+            self.affect[indices],
+            self.people[indices],
+            self.mirror,
         )
+
+    def folds(self, count: int, seed: int) -> Iterator[tuple[Indices, Indices]]:
+        """Indices to train on and to validate on, ``count`` times, with whole people."""
+        people = np.random.default_rng(seed).permutation(np.unique(self.people))
+        for part in np.array_split(people, count):
+            held_out = np.isin(self.people, part)
+            yield np.flatnonzero(~held_out), np.flatnonzero(held_out)
 
 
 def features_of(source: Source, views: Views, affect: Float32) -> FaceFeatures:
-    """What a model of ``source`` sees of the views; those of the fast mesh count as more views."""
+    """What a model of ``source`` sees of the views; those of the fast mesh count as more views.
+
+    No two pictures are taken to show one person.
+    """
+    meshes = np.concatenate((views.mesh[:, :, :SHARED_POINTS], views.fast), axis=1)
     found = np.concatenate((views.found, views.found), axis=1)
     match source:
         case "mesh":
-            parts = [mesh_features(views.mesh), mesh_features(views.fast)]
+            seen = mesh_features(meshes[found])
         case "points68":
-            parts = [points68_features(to_dlib68(points)) for points in (views.mesh, views.fast)]
+            seen = points68_features(to_dlib68(meshes[found]))
         case "blendshapes":
             # Only the larger mesh has irises, which the blendshapes need.
-            parts, found = [blendshape_features(views.shapes)], views.found
-    features = np.concatenate(parts, axis=1)
-    features[~found] = 0.0
+            found = views.found
+            seen = blendshape_features(views.shapes[found])
+    features = np.zeros((*found.shape, seen.shape[1]), dtype=np.float32)
+    features[found] = seen
     mirror = {"mesh": _mesh_mirror, "points68": _points68_mirror, "blendshapes": _shapes_mirror}
-    return FaceFeatures(features, found, affect, mirror[source](features, found))
+    people = np.arange(len(affect))
+    return FaceFeatures(features, found, affect, people, mirror[source](features, found))
+
+
+def features_of_clips(clips: AfewVa) -> FaceFeatures:
+    """What a model of 68 points sees of film clips: one view a frame."""
+    features = points68_features(clips.points)[:, None]
+    found = np.ones(features.shape[:2], dtype=np.bool_)
+    people = np.unique(clips.actors, return_inverse=True)[1]
+    mirror = _points68_mirror(features, found)
+    return FaceFeatures(features, found, clips.affect, people, mirror)
 
 
 def _mesh_mirror(features: Float32, found: NDArray[np.bool_]) -> Mirror:

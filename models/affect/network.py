@@ -10,6 +10,10 @@ from models.affect.config import AffectConfig
 
 TARGETS = 2
 """Valence and arousal."""
+REACH = 5.0
+"""How many standard deviations a feature may be away from the mean."""
+SMALLEST_SPREAD, LARGEST_SPREAD = -5.0, 1.0
+"""Limits of the log standard deviations, so that no face makes them overflow."""
 
 
 class Members(nn.Module):
@@ -53,7 +57,8 @@ class Members(nn.Module):
             hidden = self.dropout(nn.functional.gelu(hidden @ weight + bias))
         # What the uncertainty learns leaves the estimate alone.
         apart = hidden.detach()
-        return hidden @ self.mean + self.mean_bias, apart @ self.spread + self.spread_bias
+        logs = (apart @ self.spread + self.spread_bias).clamp(SMALLEST_SPREAD, LARGEST_SPREAD)
+        return hidden @ self.mean + self.mean_bias, logs
 
 
 class AffectNetwork(nn.Module):
@@ -69,7 +74,7 @@ class AffectNetwork(nn.Module):
     order: Tensor
     signs: Tensor
     centre: Tensor
-    basis: Tensor
+    scale: Tensor
     gain: Tensor
     widening: Tensor
 
@@ -77,29 +82,30 @@ class AffectNetwork(nn.Module):
         self, config: AffectConfig, features: int, order: Sequence[int], signs: Sequence[float]
     ) -> None:
         super().__init__()
-        kept = config.components or features
         self.symmetric = config.symmetric
         self.register_buffer("order", torch.tensor(order, dtype=torch.int64))
         self.register_buffer("signs", torch.tensor(signs, dtype=torch.float32))
         self.register_buffer("centre", torch.zeros(features))
-        self.register_buffer("basis", torch.zeros(features, kept))
+        self.register_buffer("scale", torch.ones(features))
         self.register_buffer("gain", torch.ones(TARGETS))
         self.register_buffer("widening", torch.ones(TARGETS))
-        self.members = Members(kept, config)
+        self.members = Members(features, config)
 
     def standardise(self, features: Tensor) -> Tensor:
-        """Standardised features, or principal components, (B, K)."""
-        return (features - self.centre) @ self.basis
+        """Standardised features (B, D); what no face of the training had is cut off."""
+        return ((features - self.centre) * self.scale).clamp(-REACH, REACH)
 
     def forward(self, features: Tensor) -> Tensor:
         """Estimate affect."""
         given = self.standardise(features)
-        means, logs = self.members(given)
         if self.symmetric:
+            # One batch, so that the weights are read once.
             mirrored = self.standardise(features[:, self.order] * self.signs)
-            other_means, other_logs = self.members(mirrored)
-            means = torch.cat((means, other_means))
-            logs = torch.cat((logs, other_logs))
+            given = torch.cat((given, mirrored))
+        means, logs = self.members(given)  # (M, B or 2 B, 2)
+        if self.symmetric:
+            rows = features.shape[0]
+            means, logs = (torch.cat((x[:, :rows], x[:, rows:])) for x in (means, logs))
         mean = means.mean(0)
         variance = (2 * logs).exp().mean(0) + (means - mean).square().mean(0)
         estimate = (mean * self.gain).clamp(-1, 1)

@@ -5,7 +5,6 @@ trained on all of them, for as long as the validated ones were.
 """
 
 import time
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,13 +13,13 @@ from torch import Tensor
 
 from agent_server.domain.arrays import Float32
 from models.affect.config import AffectConfig
-from models.affect.data import FaceFeatures, Indices
+from models.affect.data import FaceFeatures
 from models.affect.network import TARGETS, AffectNetwork
 from models.affect.views import PLAIN
 
 SPREAD_WEIGHT = 0.1
-SMALLEST_SHARE = 1e-3
-"""Principal components that explain less than this share of the first are not blown up."""
+SMALLEST = 0.1
+"""Of the features' median deviation: what is added to each, for those that hardly vary."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +60,9 @@ def train(config: AffectConfig, faces: FaceFeatures, seed: int) -> AffectNetwork
     mirror = faces.mirror
     size = features.shape[1]
     network = AffectNetwork(config, size, mirror.order.tolist(), mirror.signs.tolist())
-    _fit_basis(network, features.numpy(), config.components)
+    # A shape that hardly ever shows must not be blown up.
+    smallest = SMALLEST * float(features.std(0).median())
+    network.centre, network.scale = features.mean(0), 1 / (features.std(0) + smallest)
     given = network.standardise(features)
     steps = max(1, config.epochs * len(given) // config.batch)
     optimiser = torch.optim.AdamW(
@@ -81,12 +82,9 @@ def train(config: AffectConfig, faces: FaceFeatures, seed: int) -> AffectNetwork
 
 
 def cross_validate(config: AffectConfig, faces: FaceFeatures, folds: int, seed: int) -> Validated:
-    """Estimates for each face by networks that were trained without it.
-
-    No two faces are of one person, so folds are drawn by chance.
-    """
+    """Estimates for each face by networks that were trained without the person."""
     estimates = np.zeros((len(faces.affect), 2 * TARGETS), np.float32)
-    for index, (train_on, test_on) in enumerate(_folds(len(faces.affect), folds, seed)):
+    for index, (train_on, test_on) in enumerate(faces.folds(folds, seed)):
         network = train(config, faces.take(train_on), seed + index)
         estimates[test_on] = estimate(network, faces.features[test_on, PLAIN])
     seen = faces.found[:, PLAIN]
@@ -124,33 +122,11 @@ def train_and_calibrate(
     return network, Validated(final, scaled.affect), time.monotonic() - began
 
 
-def _folds(count: int, folds: int, seed: int) -> Iterator[tuple[Indices, Indices]]:
-    order = np.random.default_rng(seed).permutation(count)
-    for part in np.array_split(order, folds):
-        yield np.setdiff1d(order, part), part
-
-
 def _samples(config: AffectConfig, faces: FaceFeatures) -> tuple[Tensor, Tensor]:
     """Every view that shows a face, with the label of its picture."""
     found = faces.found if config.varied else faces.found & (np.arange(faces.found.shape[1]) == 0)
     labels = np.repeat(faces.affect[:, None], faces.found.shape[1], axis=1)
     return torch.from_numpy(faces.features[found]), torch.from_numpy(labels[found])
-
-
-def _fit_basis(network: AffectNetwork, features: Float32, components: int) -> None:
-    """Standardise the features, and keep their principal components if so configured."""
-    centre = features.mean(axis=0)
-    scale = features.std(axis=0) + 1e-6
-    basis = np.diag(1 / scale)
-    if components:
-        standard = (features - centre) / scale
-        _, strengths, axes = np.linalg.svd(standard, full_matrices=False)
-        deviation = strengths[:components] / np.sqrt(len(features))
-        # Between plain and whitened: the small components matter, and their noise does too.
-        evened = np.sqrt(np.maximum(deviation, SMALLEST_SHARE * deviation[0]))
-        basis = (axes[:components] / scale).T / evened[:, None].T
-    network.centre = torch.from_numpy(centre.astype(np.float32))
-    network.basis = torch.from_numpy(basis.astype(np.float32))
 
 
 def _batch(config: AffectConfig, given: Tensor, affect: Tensor) -> tuple[Tensor, Tensor]:

@@ -22,7 +22,7 @@ from agent_server.face.regions import region_of_points
 from agent_server.face.tracker import FaceTracker
 from agent_server.inference.manifest import MODEL_FILE, FaceManifest, read_manifest
 from models.data.labelled_faces import LabelledFaces
-from models.evaluation.session import OnnxModel
+from models.ops.session import OnnxModel
 
 VIEWS = 12
 PLAIN, MIRRORED = 0, 1

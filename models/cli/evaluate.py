@@ -8,10 +8,13 @@ import torch
 import typer
 
 from agent_server.domain.gesture import GESTURES
+from agent_server.inference.manifest import MODEL_FILE, AffectManifest, read_manifest
 from models.cli.options import (
+    ARTIFACTS,
     CACHE,
     CLASSIFIER,
     PREDICTOR,
+    AffectInputOption,
     CacheOption,
     ClassifierBundleOption,
     DataOption,
@@ -23,8 +26,11 @@ from models.cli.options import (
     model_of,
     show,
 )
+from models.data.labelled_faces import is_training_set, read_faces, test_split
 from models.data.splits import synthetic_split
 from models.evaluation.ablations import ablation_report
+from models.evaluation.affect import affect_report, read_affect
+from models.evaluation.affect_page import write_affect_page
 from models.evaluation.forecasters import bundled, forecaster
 from models.evaluation.gesture_page import write_gesture_page
 from models.evaluation.latency import bundle_latency
@@ -34,9 +40,9 @@ from models.evaluation.prediction import evaluate
 from models.evaluation.protocols import SERVER_PROTOCOLS, protocol_named
 from models.evaluation.real_streams import shipped_report
 from models.evaluation.report import classifier_report, compare, server_report
-from models.evaluation.session import OnnxModel
 from models.evaluation.sim2real import sim2real_report
 from models.evaluation.thesis import thesis_report
+from models.ops.session import OnnxModel
 
 app = typer.Typer(no_args_is_help=True, help="Measure a bundle.")
 
@@ -74,6 +80,30 @@ def evaluate_prediction(
         page = compare(what, how, data, windows[protocol], report)
         print(page, file=sys.stderr)
     show(results, as_json)
+
+
+@app.command("affect")
+def evaluate_affect(
+    data: DataOption,
+    source: AffectInputOption = "mesh",
+    split: Annotated[
+        Literal["test", "all"] | None,
+        typer.Option(help="Which pictures: test for the training set itself, else all."),
+    ] = None,
+    report: ReportOption = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Valence and arousal of pictures beside a labels.csv, read by the pipeline that ships."""
+    torch.set_num_threads(1)
+    faces = read_faces(data)
+    if (split or ("test" if is_training_set(faces) else "all")) == "test":
+        faces = faces.take(test_split(faces)[1])
+    bundle = ARTIFACTS / f"affect_{source}"
+    read_manifest(bundle, AffectManifest)
+    reading = read_affect(faces, source, bundle / MODEL_FILE, ARTIFACTS)
+    if report is not None:
+        print(write_affect_page(reading, source, report), file=sys.stderr)
+    show(affect_report(reading), as_json)
 
 
 @app.command("gestures")

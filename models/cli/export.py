@@ -6,7 +6,10 @@ from typing import Annotated
 import torch
 import typer
 
+from agent_server.synthetic import face
+from models.affect.runs import read_run
 from models.cli.options import (
+    ARTIFACTS,
     CACHE,
     CLASSIFIER,
     PREDICTOR,
@@ -15,10 +18,13 @@ from models.cli.options import (
     PredictorBundleOption,
     show,
 )
+from models.export.affect import export_affect
 from models.export.classifier import export_classifier
 from models.export.face import export_faces
+from models.export.face_shapes import export_face_shapes
 from models.export.predictor import export_predictor
 
+FACE_SHAPES = Path(face.__file__).with_name(face.ASSET)
 app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")
 
 RunOption = Annotated[Path, typer.Option("--run", help="Run to export.")]
@@ -70,6 +76,29 @@ def export_interformer(
     torch.set_num_threads(1)
     manifest = export_classifier(run, predictor, out, version, data, cache)
     show(manifest.results, as_json=False)
+
+
+@app.command("affect")
+def export_affect_model(
+    data: DataOption,
+    run: RunOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    version: VersionOption = "0.1.0",
+) -> None:
+    """Export a model that reads affect, and measure it on the test fifth of the pictures."""
+    torch.set_num_threads(1)
+    manifest = export_affect(read_run(run), data, out, version)
+    show(manifest.results, as_json=False)
+
+
+@app.command("face-shapes")
+def export_shapes(
+    data: DataOption,
+    out: Annotated[Path, typer.Option("--out", help="File to write.")] = FACE_SHAPES,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Fit the generator's faces on the faces of the training pictures."""
+    print(f"{out}: {export_face_shapes(data, ARTIFACTS, cache, out) / 1000:.0f} kB")
 
 
 @app.command("face")

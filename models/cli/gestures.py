@@ -24,8 +24,8 @@ from models.data.labelled import check_known, read_gestures
 from models.evaluation.gesture_measures import measure
 from models.evaluation.gesture_page import show_measures
 from models.evaluation.readings import HELD, PREDICTED, TRUE
-from models.evaluation.session import OnnxModel
 from models.export.teach import Lesson, taught_figures, teach
+from models.ops.session import OnnxModel
 
 app = typer.Typer(no_args_is_help=True, help="Teach gestures of one's own.")
 

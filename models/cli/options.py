@@ -9,9 +9,10 @@ import torch
 import typer
 
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
-from models.evaluation.session import OnnxModel
+from models.affect.config import Source
 from models.interformer.config import TrainConfig as InterformerConfig
 from models.ma_wgan.config import TrainConfig as MaWganConfig
+from models.ops.session import OnnxModel
 from models.simlpe.config import TrainConfig as SimlpeConfig
 
 DataOption = Annotated[Path, typer.Option("--data", help="Folder that holds the set folders.")]
@@ -28,6 +29,7 @@ ClassifierBundleOption = Annotated[
 PredictorBundleOption = Annotated[
     Path, typer.Option("--predictor", help="Bundle whose predictor completes the windows.")
 ]
+AffectInputOption = Annotated[Source, typer.Option("--input", help="What a face is given as.")]
 CACHE = Path("runs/cache")
 ARTIFACTS = Path(__file__).parents[1] / "artifacts"
 PREDICTOR = ARTIFACTS / "ma_wgan_server"

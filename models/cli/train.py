@@ -3,11 +3,25 @@
 from pathlib import Path
 from typing import Annotated
 
+import torch
 import typer
 
-from models.cli.options import CACHE, CacheOption, DataOption, OutOption, SeedOption, configured
+from models.affect.config import named
+from models.affect.runs import train_run, training_faces
+from models.cli.options import (
+    ARTIFACTS,
+    CACHE,
+    AffectInputOption,
+    CacheOption,
+    DataOption,
+    OutOption,
+    SeedOption,
+    configured,
+    show,
+)
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import TRAINED, cut, join
+from models.evaluation.affect import affect_measures
 from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
 from models.interformer.train import train as train_classifier
 from models.ma_wgan.config import CONFIGS as MA_WGAN_CONFIGS
@@ -47,6 +61,28 @@ def train_ma_wgan(
     chosen = configured(MA_WGAN_CONFIGS, config, steps)
     run = Run(out, chosen, seed, _command("ma_wgan", config, seed, steps), resume)
     train_predictor(chosen, run, data, cache)
+
+
+@app.command("affect")
+def train_affect(
+    data: DataOption,
+    out: OutOption,
+    source: AffectInputOption = "mesh",
+    config: ConfigOption = "default",
+    seed: SeedOption = 0,
+    folds: Annotated[int, typer.Option(help="Of the cross-validation.")] = 5,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Train a model that reads valence and arousal off faces, after a cross-validation."""
+    torch.set_num_threads(1)
+    command = (
+        f"python -m models train affect --input {source} --config {config} --data DIR --out RUN"
+        f" --seed {seed} --folds {folds}"
+    )
+    chosen = named(config, source)
+    run = Run(out, chosen, seed, command, resume=False)
+    validated = train_run(chosen, training_faces(chosen, data, ARTIFACTS, cache), run, folds)
+    show(affect_measures(validated.estimates, validated.affect), as_json=False)
 
 
 @app.command("simlpe")

@@ -49,23 +49,6 @@ class AfewVa:
     clips: tuple[str, ...]
     actors: tuple[str, ...]
 
-    def folds(self, count: int) -> list[list[int]]:
-        """Indices of ``count`` folds of whole actors, as equal as they can be.
-
-        Raises:
-            InvalidInput: If there are fewer actors than folds.
-        """
-        frames: dict[str, list[int]] = {}
-        for index, actor in enumerate(self.actors):
-            frames.setdefault(actor, []).append(index)
-        if len(frames) < count:
-            raise InvalidInput(f"{count} folds were asked for, and there are {len(frames)} actors")
-        folds: list[list[int]] = [[] for _ in range(count)]
-        # The largest first, each to the smallest fold; ties by name, so that it stays the same.
-        for _, indices in sorted(frames.items(), key=lambda item: (-len(item[1]), item[0])):
-            min(folds, key=len).extend(indices)
-        return folds
-
 
 def read_afew_va(folder: Path) -> AfewVa:
     """Read all clips below a folder.

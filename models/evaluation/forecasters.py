@@ -12,7 +12,7 @@ from agent_server.errors import ConfigError
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.data.sets import motion_set
 from models.evaluation.protocols import Protocol
-from models.evaluation.session import OnnxModel
+from models.ops.session import OnnxModel
 
 MODELS = Path(__file__).parents[1]
 SERVER_BUNDLE = MODELS / "artifacts" / "ma_wgan_server"

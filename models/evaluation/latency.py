@@ -7,7 +7,7 @@ import numpy as np
 
 from agent_server.domain.arrays import Float32
 from agent_server.inference.manifest import GOLDEN_FILE, MODEL_FILE, read_manifest
-from models.evaluation.session import OnnxModel
+from models.ops.session import OnnxModel
 
 
 def latency_ms(model: OnnxModel, window: Float32, repeats: int = 500) -> dict[str, float]:

@@ -25,7 +25,7 @@ from models.evaluation.html_report import write_report
 from models.evaluation.latency import latency_ms
 from models.evaluation.prediction import evaluate, gain_percent, outcomes, summary
 from models.evaluation.protocols import Protocol, protocol_named
-from models.evaluation.session import OnnxModel
+from models.ops.session import OnnxModel
 
 IDLE_MINUTES = 40
 IDLE_SEED = 901

@@ -18,9 +18,9 @@ from agent_server.domain.arrays import Float32
 from agent_server.domain.motion import SEEN_FRAMES
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.data.windows import WindowSet
-from models.evaluation.session import OnnxModel
 from models.interformer.config import TrainConfig
 from models.interformer.train import hold_last, load_classifier, train, window_logits
+from models.ops.session import OnnxModel
 from models.training.run import INFO, Run
 
 

@@ -25,8 +25,8 @@ from agent_server.inference.manifest import (
     write_manifest,
 )
 from models.data import cmu, h36m, synthetic
-from models.evaluation.session import OnnxModel
 from models.export.onnx import OPSET, check_parity, is_batch_exact, write_onnx
+from models.ops.session import OnnxModel
 
 GOLDEN_ROWS = 6
 LICENCE = "Apache-2.0"

@@ -11,12 +11,12 @@ from agent_server.inference.manifest import MODEL_FILE, MotionManifest, read_man
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import AMBIGUOUS, cut, join
 from models.evaluation.report import STRIDE, classifier_report
-from models.evaluation.session import OnnxModel
 from models.export.bundle import Export, write_bundle
 from models.export.calibration import fit_temperature
 from models.export.card import classifier_card
 from models.interformer.network import Calibrated, Classifier
 from models.interformer.train import load_classifier
+from models.ops.session import OnnxModel
 from models.training.run import read_info
 
 CHECKED_WINDOWS = 128

@@ -29,10 +29,10 @@ from agent_server.inference.manifest import (
     read_manifest,
     write_manifest,
 )
-from models.evaluation.session import OnnxModel
 from models.export.tflite.operators import convert_operator
 from models.export.tflite.reader import Graph, read_graph
 from models.export.tflite.writer import NATURAL, OPSET, GraphWriter
+from models.ops.session import OnnxModel
 
 LICENCE = "Apache-2.0"
 VERSION = "1.0.0"

@@ -13,7 +13,7 @@ from torch import nn
 
 from agent_server.domain.arrays import Float32
 from agent_server.errors import BundleError
-from models.evaluation.session import OnnxModel
+from models.ops.session import OnnxModel
 
 OPSET = 18
 TOLERANCE = 1e-4

@@ -15,11 +15,11 @@ from models.evaluation.latency import latency_ms
 from models.evaluation.prediction import MM
 from models.evaluation.protocols import SERVER_PROTOCOLS, Protocol, protocol_named
 from models.evaluation.report import benchmark_report, server_report
-from models.evaluation.session import OnnxModel
 from models.export.bundle import SOURCES, Export, write_bundle
 from models.export.card import predictor_card
 from models.ma_wgan.network import Averaged
 from models.ma_wgan.train import load_trained
+from models.ops.session import OnnxModel
 from models.simlpe.train import load_simlpe
 from models.training.run import read_info
 

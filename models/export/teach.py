@@ -23,7 +23,6 @@ from models.evaluation.gestures import false_reactions, labelled_windows
 from models.evaluation.latency import latency_ms
 from models.evaluation.readings import READINGS
 from models.evaluation.rows import Bundled
-from models.evaluation.session import OnnxModel
 from models.export.bundle import Export, write_bundle
 from models.export.calibration import fit_temperature
 from models.export.restore import restore_classifier
@@ -31,6 +30,7 @@ from models.export.taught_card import taught_card
 from models.interformer.config import NetworkConfig, TrainConfig
 from models.interformer.network import Calibrated, Classifier
 from models.interformer.train import load_classifier, train, window_logits
+from models.ops.session import OnnxModel
 from models.training.run import Run
 
 BUILT_IN = (*DISCOMFORTS, HELLO)

@@ -14,8 +14,8 @@ from agent_server.inference.manifest import (
     MotionManifest,
     read_manifest,
 )
-from models.evaluation.session import OnnxModel
 from models.export.onnx import is_batch_exact
+from models.ops.session import OnnxModel
 
 ARTIFACTS = Path(__file__).parents[2] / "models" / "artifacts"
 PREDICTOR, CLASSIFIER = "ma_wgan_server", "interformer_server"

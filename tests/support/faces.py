@@ -42,6 +42,7 @@ class ShapeReader:
     def estimate(self, features):
         if self.fails:
             raise InferenceError("the shape reader fails, as it was told to")
+        features = np.square(features)
         valence = features[:, SMILE] - features[:, FROWN]
         sd = np.full(len(features), 0.1)
         return np.stack((valence, features[:, OPEN], sd, sd), axis=1).astype(np.float32)

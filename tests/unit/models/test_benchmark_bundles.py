@@ -15,7 +15,7 @@ from agent_server.inference.manifest import (
 )
 from agent_server.inference.runtime import OnnxModel as ServerModel
 from models.evaluation.forecasters import BENCHMARKS
-from models.evaluation.session import OnnxModel
+from models.ops.session import OnnxModel
 
 ROOT = Path(__file__).parents[3]
 BUNDLES = sorted(path.parent for path in (ROOT / BENCHMARKS).glob("*/manifest.json"))

@@ -14,7 +14,6 @@ from agent_server.inference.manifest import (  # noqa: E402
     MotionManifest,
     read_manifest,
 )
-from models.evaluation.session import OnnxModel  # noqa: E402
 from models.export.bundle import Export, write_bundle  # noqa: E402
 from models.export.calibration import fit_temperature  # noqa: E402
 from models.export.onnx import check_parity, is_batch_exact, write_onnx  # noqa: E402
@@ -22,6 +21,7 @@ from models.interformer.config import NetworkConfig as ClassifierConfig  # noqa:
 from models.interformer.network import Calibrated, Classifier  # noqa: E402
 from models.ma_wgan.config import NetworkConfig  # noqa: E402
 from models.ma_wgan.network import Predictor  # noqa: E402
+from models.ops.session import OnnxModel  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore")  # the exporter's own deprecations
 

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from agent_server.domain.affect import AffectSample
+from agent_server.domain.face import Face, FaceBlendshapes, FaceLandmarks
 from agent_server.domain.gesture import DISCOMFORTS, GESTURES
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import to_ns
 from agent_server.errors import ConfigError
 from agent_server.scene.rules import default_rules
+from agent_server.synthetic.face import FaceKind
 from agent_server.synthetic.scenario import (
     BODY_ID,
     DUTIES,
@@ -35,8 +37,15 @@ def frames_of(session: Session, body_id: int = BODY_ID) -> list[SkeletonFrame]:
     ]
 
 
-def affect_of(session: Session) -> list[AffectSample]:
-    return [event for event in session.events if isinstance(event, AffectSample)]
+def affect_of(scenario: Scenario) -> list[AffectSample]:
+    """The moods behind a scenario's faces."""
+    events = play(replace(scenario, face_as="affect")).events
+    return [event for event in events if isinstance(event, AffectSample)]
+
+
+def faces_of(session: Session) -> list[Face]:
+    kinds = (FaceLandmarks, FaceBlendshapes)
+    return [event for event in session.events if isinstance(event, kinds)]
 
 
 @pytest.mark.parametrize("scenario", SHORT, ids=lambda scenario: scenario.name)
@@ -60,12 +69,12 @@ def test_a_session_is_in_order_and_labelled(scenario: Scenario) -> None:
 def test_playing_again_gives_the_same_session() -> None:
     first, second = play(BY_NAME["smell"]), play(BY_NAME["smell"])
     assert first.labels == second.labels
-    assert affect_of(first) == affect_of(second)
+    for one, other in zip(faces_of(first), faces_of(second), strict=True):
+        np.testing.assert_array_equal(one.values, other.values)
     for one, other in zip(frames_of(first), frames_of(second), strict=True):
         assert one.originating_ns == other.originating_ns
         np.testing.assert_array_equal(one.joints, other.joints)
-    changed = play(replace(BY_NAME["smell"], seed=99))
-    assert affect_of(changed) != affect_of(first)
+    assert affect_of(replace(BY_NAME["smell"], seed=99)) != affect_of(BY_NAME["smell"])
 
 
 def test_expected_reactions_follow_the_rules_of_the_room() -> None:
@@ -115,20 +124,21 @@ def test_the_face_shows_what_the_person_feels() -> None:
         for label in session.labels:
             inside = [
                 sample
-                for sample in affect_of(session)
+                for sample in affect_of(BY_NAME[name])
                 if label.onset_ns + to_ns(0.6) < sample.originating_ns < label.offset_ns
             ]
             if label.gesture in DISCOMFORTS and unpleasant:
                 assert all(s.valence < -3 and abs(s.arousal) > 3 for s in inside) and inside
             elif label.gesture in DISCOMFORTS:
                 assert all(s.valence > 0 for s in inside) and inside
-    steps = np.diff([sample.originating_ns for sample in affect_of(play(BY_NAME["cold"]))])
+    steps = np.diff([sample.originating_ns for sample in affect_of(BY_NAME["cold"])])
     np.testing.assert_allclose(steps, 1e8, atol=10)
 
 
 def test_a_headset_sends_no_affect() -> None:
     session = play(BY_NAME["headset"])
-    assert session.face == "none" and not affect_of(session)
+    assert session.face == "none" and not faces_of(session)
+    assert not affect_of(BY_NAME["headset"])
     assert play(BY_NAME["cold"]).face == "expected"
 
 
@@ -181,3 +191,13 @@ def test_contradictions_are_refused() -> None:
     late = Scenario("x", "", 0, KINECT_V2, 5.0, (Part("cold", "elbows", 4.0),))
     with pytest.raises(ConfigError, match="raise duration_s"):
         play(late)
+
+
+@pytest.mark.parametrize("kind", ["mesh478", "mesh468", "dlib68", "blendshapes"])
+def test_a_scenario_sends_the_same_motion_whatever_it_sends_of_the_face(kind: FaceKind) -> None:
+    moods = play(replace(BY_NAME["cold"], face_as="affect"))
+    faces = play(replace(BY_NAME["cold"], face_as=kind))
+    for one, other in zip(frames_of(moods), frames_of(faces), strict=True):
+        np.testing.assert_array_equal(one.joints, other.joints)
+    stamps = [face.originating_ns for face in faces_of(faces)]
+    assert stamps == [s.originating_ns for s in moods.events if isinstance(s, AffectSample)]
