@@ -87,7 +87,7 @@ def export_affect_model(
 ) -> None:
     """Export a model that reads affect, and measure it on the test fifth of the pictures."""
     torch.set_num_threads(1)
-    manifest = export_affect(read_run(run), data, out, version)
+    manifest = export_affect(read_run(run), data, out, version, ARTIFACTS)
     show(manifest.results, as_json=False)
 
 

@@ -34,7 +34,9 @@ WHAT = {
 }
 
 
-def export_affect(trained: Trained, data: Path, out: Path, version: str) -> AffectManifest:
+def export_affect(
+    trained: Trained, data: Path, out: Path, version: str, bundles: Path
+) -> AffectManifest:
     """Write and check a bundle; nothing is left behind if a check fails.
 
     Args:
@@ -42,6 +44,7 @@ def export_affect(trained: Trained, data: Path, out: Path, version: str) -> Affe
         data: Folder of the pictures whose test fifth it is measured on.
         out: Folder of the bundle.
         version: Of the model.
+        bundles: Folder of the face networks' bundles.
 
     Raises:
         BundleError: If ONNX does not compute what torch does.
@@ -72,7 +75,7 @@ def export_affect(trained: Trained, data: Path, out: Path, version: str) -> Affe
                 "cross_validated": affect_measures(
                     trained.validated.estimates, trained.validated.affect
                 ),
-                "test": affect_report(read_affect(test, source, path, out.parent)),
+                "test": affect_report(read_affect(test, source, path, bundles)),
                 "onnx_difference": check_parity(network, model, features),
                 "latency": latency_ms(model, features[:1]),
             },
