@@ -17,6 +17,15 @@ _FRAME_HEADERS = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 _WITHOUT_LENGTH = frozenset({0x01, *range(0xD0, 0xD9)})
 
 
+def use_one_thread() -> None:
+    """Keep OpenCV to the thread that calls it, in the whole process.
+
+    Crops are small: other threads would only take the cores that the models need. Whoever owns
+    the thread that looks at images calls this once.
+    """
+    cv2.setNumThreads(1)
+
+
 def decode_jpeg(data: bytes) -> Pixels:
     """Decode a JPEG of at most 1280 x 720, in either orientation.
 

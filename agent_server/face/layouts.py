@@ -4,6 +4,9 @@ import numpy as np
 
 from agent_server.domain.arrays import Float32
 
+RIGHT_PUPIL, LEFT_PUPIL = 468, 473
+"""Of the 478-point mesh; "right" is the person's right."""
+
 # fmt: off
 MESH_TO_DLIB68 = np.array((
     127, 234, 93, 132, 58, 172, 150, 176, 152, 400, 379, 397, 288, 361, 323, 454, 356,  # jaw
@@ -16,7 +19,7 @@ MESH_TO_DLIB68 = np.array((
     61, 39, 37, 0, 267, 269, 291, 405, 314, 17, 84, 181,  # lips, outside
     78, 82, 13, 312, 308, 317, 14, 87,  # lips, inside
 ))
-"""Of each of dlib's 68 points the nearest of the mesh; "right" is the person's right."""
+"""Of each of dlib's 68 points the nearest of the mesh."""
 
 MIRROR_DLIB68 = np.array((
     *range(16, -1, -1),
@@ -27,6 +30,24 @@ MIRROR_DLIB68 = np.array((
     64, 63, 62, 61, 60, 67, 66, 65,
 ))
 """Where each point of dlib's lies in a mirrored face."""
+
+CONTOURS: dict[str, tuple[int, ...]] = {
+    "oval": (10, 338, 297, 332, 284, 251, 389, 356, 454, 323, 361, 288, 397, 365, 379, 378, 400,
+             377, 152, 148, 176, 149, 150, 136, 172, 58, 132, 93, 234, 127, 162, 21, 54, 103, 67,
+             109, 10),
+    "right_eye": (33, 7, 163, 144, 145, 153, 154, 155, 133, 173, 157, 158, 159, 160, 161, 246, 33),
+    "left_eye": (263, 249, 390, 373, 374, 380, 381, 382, 362, 398, 384, 385, 386, 387, 388, 466,
+                 263),
+    "right_brow": (70, 63, 105, 66, 107),
+    "left_brow": (300, 293, 334, 296, 336),
+    "outer_lips": (61, 146, 91, 181, 84, 17, 314, 405, 321, 375, 291, 409, 270, 269, 267, 0, 37,
+                   39, 40, 185, 61),
+    "inner_lips": (78, 95, 88, 178, 87, 14, 317, 402, 318, 324, 308, 415, 310, 311, 312, 13, 82,
+                   81, 80, 191, 78),
+    "nose": (168, 6, 197, 195, 5, 4),
+}
+"""Lines through points of the mesh that make a drawing of a face; a closed one ends where it
+began."""
 # fmt: on
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from agent_server.domain.face import FaceLandmarks
-from agent_server.face.image import decode_jpeg
+from agent_server.face.image import decode_jpeg, use_one_thread
 from agent_server.face.tracker import FaceTracker
 from agent_server.protocol.faces import round_points
 from agent_server.service.audience import Client
@@ -23,7 +23,7 @@ class Eyes:
 
     def __init__(self, networks: FaceNetworks) -> None:
         self._networks = networks
-        self._thread = ThreadPoolExecutor(1, thread_name_prefix="eyes")
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="eyes", initializer=use_one_thread)
 
     def tracker(self) -> FaceTracker:
         """A tracker for one person."""
