@@ -9,6 +9,7 @@ page, needs none at all.
 ``python hatch_build.py`` builds the page in place.
 """
 
+import gzip
 import hashlib
 import os
 import sys
@@ -73,8 +74,17 @@ def build_page(web: Path) -> Path:
         scope = () if is_workplace else ("--omit=dev",)
         _npm(web, "ci", *scope, "--ignore-scripts")
     _npm(web, "run", "build")
+    _compress(dist)
     stamp.write_text(f"{digest}\n", "ascii")
     return dist
+
+
+def _compress(dist: Path) -> None:
+    """Keep WebAssembly compressed: it is most of the page, and every browser takes it so."""
+    for path in sorted(dist.rglob("*.wasm")):
+        data = gzip.compress(path.read_bytes(), compresslevel=9, mtime=0)
+        path.with_name(f"{path.name}.gz").write_bytes(data)
+        path.unlink()
 
 
 def _sources(web: Path) -> Iterator[Path]:

@@ -6,15 +6,24 @@ from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
-from fastapi.responses import HTMLResponse, JSONResponse, Response
+from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
+from starlette.types import Scope
 
-from agent_server import __version__
+from agent_server import __version__, assets
+from agent_server.inference.manifest import MANIFEST_FILE, MODEL_FILE
 from agent_server.service.hub import Hub
 from agent_server.transports.websocket import websocket_router
 
 _NO_PAGE = """<!doctype html><meta charset="utf-8"><title>agent-server</title>
 <p>The server is running. Its page has not been built: run <code>make page</code>.</p>"""
+
+
+PAGE_POLICY = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'"
+"""Nothing from elsewhere; WebAssembly may run, which the face networks need."""
+PAGE_NETWORKS = ("face_detector", "face_mesh")
+"""Bundles that the page runs."""
+FOR_GOOD = "public, max-age=31536000, immutable"
 
 
 class _Page(StaticFiles):
@@ -24,8 +33,17 @@ class _Page(StaticFiles):
         """A file, with what a browser may do with it."""
         response = super().file_response(*args, **kwargs)
         response.headers["Cache-Control"] = "no-cache"
-        response.headers["Content-Security-Policy"] = "default-src 'self'"
+        response.headers["Content-Security-Policy"] = PAGE_POLICY
         response.headers["X-Content-Type-Options"] = "nosniff"
+        return response
+
+    async def get_response(self, path: str, scope: Scope) -> Response:
+        """A file; WebAssembly is built compressed, and goes out as it is."""
+        if not path.endswith(".wasm"):
+            return await super().get_response(path, scope)
+        response = await super().get_response(f"{path}.gz", scope)
+        response.headers["Content-Type"] = "application/wasm"
+        response.headers["Content-Encoding"] = "gzip"
         return response
 
 
@@ -72,6 +90,15 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
                 for session in hub.sessions.values()
             ]
         }
+
+    @app.get("/v1/models/{name}/{file}")
+    async def face_network(name: str, file: str) -> Response:
+        """A face network, for browsers that read faces themselves."""
+        if name not in PAGE_NETWORKS or file not in (MANIFEST_FILE, MODEL_FILE):
+            return JSONResponse({"detail": "there is no such file of a face network"}, 404)
+        # A model's address carries its hash, a manifest's does not.
+        cache = FOR_GOOD if file == MODEL_FILE else "no-cache"
+        return FileResponse(assets.bundles() / name / file, headers={"Cache-Control": cache})
 
     if (page / "index.html").exists():
         app.mount("/", _Page(directory=page, html=True), name="page")

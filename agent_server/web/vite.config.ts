@@ -21,5 +21,6 @@ export default defineConfig({
     chunkSizeWarningLimit: 800,
     license: { fileName: "licenses.md" },
   },
+  worker: { format: "es" },
   server: { proxy: { "/v1": { target: server, ws: true } } },
 });

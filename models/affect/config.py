@@ -18,6 +18,7 @@ class AffectConfig:
         hidden: Units of each hidden layer.
         dropout: Share of units left out in training.
         members: Networks whose estimates are averaged; their spread is part of the uncertainty.
+        linear: Share that a linear model (ridge regression) has in the estimate.
         symmetric: Average the estimates of a face and of its mirror image.
         varied: Train on all views of a picture, not only on the picture as it is.
         epochs: Passes through the views.
@@ -32,6 +33,7 @@ class AffectConfig:
     hidden: tuple[int, ...] = (256, 128)
     dropout: float = 0.3
     members: int = 4
+    linear: float = 0.3
     symmetric: bool = True
     varied: bool = True
     epochs: int = 12
@@ -66,6 +68,7 @@ def named(name: str, source: Source) -> AffectConfig:
                 hidden=(256, 128, 64),
                 dropout=0.5,
                 members=1,
+                linear=0.0,
                 symmetric=False,
                 varied=False,
                 epochs=120,
@@ -78,7 +81,7 @@ def named(name: str, source: Source) -> AffectConfig:
 
 
 _DEFAULTS = {
-    "mesh": AffectConfig("mesh", hidden=(384, 192), members=3, epochs=14),
+    "mesh": AffectConfig("mesh", epochs=24),
     "points68": AffectConfig("points68", hidden=(384, 192), epochs=14, noise=0.05),
     "blendshapes": AffectConfig("blendshapes", epochs=24, noise=0.05),
 }

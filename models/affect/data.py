@@ -73,20 +73,20 @@ class FaceFeatures:
 
 
 def features_of(source: Source, views: Views, affect: Float32) -> FaceFeatures:
-    """What a model of ``source`` sees of the views; those of the fast mesh count as more views.
+    """What a model of ``source`` sees of the views.
 
     No two pictures are taken to show one person.
     """
-    meshes = np.concatenate((views.mesh[:, :, :SHARED_POINTS], views.fast), axis=1)
-    found = np.concatenate((views.found, views.found), axis=1)
+    found = views.found
     match source:
         case "mesh":
-            seen = mesh_features(meshes[found])
+            seen = mesh_features(views.mesh[found])
         case "points68":
+            # Other programs place the 68 points otherwise than one network does, or two.
+            meshes = np.concatenate((views.mesh[:, :, :SHARED_POINTS], views.fast), axis=1)
+            found = np.concatenate((found, found), axis=1)
             seen = points68_features(to_dlib68(meshes[found]))
         case "blendshapes":
-            # Only the larger mesh has irises, which the blendshapes need.
-            found = views.found
             seen = blendshape_features(views.shapes[found])
     features = np.zeros((*found.shape, seen.shape[1]), dtype=np.float32)
     features[found] = seen

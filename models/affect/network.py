@@ -75,6 +75,8 @@ class AffectNetwork(nn.Module):
     signs: Tensor
     centre: Tensor
     scale: Tensor
+    slope: Tensor
+    level: Tensor
     gain: Tensor
     widening: Tensor
 
@@ -83,10 +85,13 @@ class AffectNetwork(nn.Module):
     ) -> None:
         super().__init__()
         self.symmetric = config.symmetric
+        self.linear = config.linear
         self.register_buffer("order", torch.tensor(order, dtype=torch.int64))
         self.register_buffer("signs", torch.tensor(signs, dtype=torch.float32))
         self.register_buffer("centre", torch.zeros(features))
         self.register_buffer("scale", torch.ones(features))
+        self.register_buffer("slope", torch.zeros(features, TARGETS))
+        self.register_buffer("level", torch.zeros(TARGETS))
         self.register_buffer("gain", torch.ones(TARGETS))
         self.register_buffer("widening", torch.ones(TARGETS))
         self.members = Members(features, config)
@@ -103,6 +108,8 @@ class AffectNetwork(nn.Module):
             mirrored = self.standardise(features[:, self.order] * self.signs)
             given = torch.cat((given, mirrored))
         means, logs = self.members(given)  # (M, B or 2 B, 2)
+        if self.linear:
+            means = (1 - self.linear) * means + self.linear * (given @ self.slope + self.level)
         if self.symmetric:
             rows = features.shape[0]
             means, logs = (torch.cat((x[:, :rows], x[:, rows:])) for x in (means, logs))

@@ -18,6 +18,8 @@ from models.affect.network import TARGETS, AffectNetwork
 from models.affect.views import PLAIN
 
 SPREAD_WEIGHT = 0.1
+RIDGE = 0.003
+"""Of the linear part, on standardised features, for each sample."""
 SMALLEST = 0.1
 """Of the features' median deviation: what is added to each, for those that hardly vary."""
 
@@ -64,6 +66,8 @@ def train(config: AffectConfig, faces: FaceFeatures, seed: int) -> AffectNetwork
     smallest = SMALLEST * float(features.std(0).median())
     network.centre, network.scale = features.mean(0), 1 / (features.std(0) + smallest)
     given = network.standardise(features)
+    if config.linear:
+        network.slope, network.level = _ridge(given, affect)
     steps = max(1, config.epochs * len(given) // config.batch)
     optimiser = torch.optim.AdamW(
         network.members.parameters(), config.rate, weight_decay=config.weight_decay
@@ -127,6 +131,16 @@ def _samples(config: AffectConfig, faces: FaceFeatures) -> tuple[Tensor, Tensor]
     found = faces.found if config.varied else faces.found & (np.arange(faces.found.shape[1]) == 0)
     labels = np.repeat(faces.affect[:, None], faces.found.shape[1], axis=1)
     return torch.from_numpy(faces.features[found]), torch.from_numpy(labels[found])
+
+
+def _ridge(given: Tensor, affect: Tensor) -> tuple[Tensor, Tensor]:
+    """Slope (D, 2) and level (2,) of a ridge regression; the level is not shrunk."""
+    values, targets = given.double(), affect.double()
+    centre, level = values.mean(0), targets.mean(0)
+    apart = values - centre
+    penalty = RIDGE * len(values) * torch.eye(values.shape[1], dtype=torch.float64)
+    slope = torch.linalg.solve(apart.T @ apart + penalty, apart.T @ (targets - level))
+    return slope.float(), (level - centre @ slope).float()
 
 
 def _batch(config: AffectConfig, given: Tensor, affect: Tensor) -> tuple[Tensor, Tensor]:

@@ -1,65 +1,17 @@
 """The page in a real browser, on a real server, with the shipped models and a recorded stream."""
 
 import asyncio
-import shutil
-from contextlib import asynccontextmanager
 from pathlib import Path
 
-import pytest
-
-from agent_server import assets
 from agent_server.recording.reader import open_recording
 from agent_server.transports.client import send_paced
 from agent_server.transports.server import load_models
+from tests.support.browser import browsing, needs_browser, until
 from tests.support.live import live
 
-playwright = pytest.importorskip("playwright.async_api", reason="playwright is not installed")
-CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
-pytestmark = [
-    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium on this machine"),
-    pytest.mark.skipif(
-        not (assets.page() / "index.html").exists(), reason="the page is not built: make page"
-    ),
-]
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-first-run",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
+pytestmark = needs_browser
 COLD = Path(__file__).parents[2] / "recorded_streams" / "cold.mcap"
 SPEED = 4.0
-
-
-@asynccontextmanager
-async def browsing(url):
-    """A page on ``url``, and everything that it asked for and complained about."""
-    async with playwright.async_playwright() as tool:
-        browser = await tool.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        page = await browser.new_page(viewport={"width": 1280, "height": 720})
-        page.requested, page.complaints = [], []
-        page.on("request", lambda request: page.requested.append(request.url))
-        page.on("pageerror", lambda error: page.complaints.append(str(error)))
-        await page.goto(url)
-        try:
-            yield page
-        finally:
-            await browser.close()
-
-
-async def until(page, condition, within_s=20.0):
-    """Step the page until its state fits ``condition``, and give that state."""
-    async with asyncio.timeout(within_s):
-        while True:
-            await page.evaluate("window.agentPage.step(100)")
-            state = await page.evaluate("window.agentPage.state()")
-            if condition(state):
-                return state
-            await asyncio.sleep(0.05)
 
 
 async def test_the_page_shows_what_the_agent_makes_of_a_person(tmp_path):

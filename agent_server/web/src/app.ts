@@ -1,9 +1,11 @@
 /** Puts the page together: telemetry into the store, the store into the panels and the view. */
 
 import { browserHost } from "./net/browser.ts";
-import { MonitorConnection } from "./net/connection.ts";
+import { Camera, type CameraState } from "./face/camera.ts";
+import { Connection } from "./net/connection.ts";
 import { readDirectory, type Directory } from "./net/directory.ts";
 import { AffectPanel } from "./panels/affect.ts";
+import { CameraPanel } from "./panels/camera.ts";
 import { GesturePanel } from "./panels/gestures.ts";
 import { Inspector } from "./panels/inspector.ts";
 import { LogPanel } from "./panels/log.ts";
@@ -31,11 +33,13 @@ export class App {
   readonly #place: Place;
   readonly #stage: Stage | null;
   readonly #store = new Store();
-  readonly #connection: MonitorConnection;
+  readonly #connection: Connection;
   readonly #strip = new StatusStrip(byId("session"), byId("lamps"), byId("gauges"));
   readonly #counters = new Counters(byId("counters"), byId("server"));
   readonly #gestures = new GesturePanel(byId("bars"), byId("gesture-now"));
   readonly #affect = new AffectPanel(byId("affect"), byId("gate-mode"));
+  readonly #cameraPanel = new CameraPanel(byId("camera"));
+  readonly #camera: Camera;
   readonly #room = new RoomPanel(byId("room"), byId("modes"));
   readonly #log = new LogPanel(byId("rows"), byId("announcer"), (row) => this.#inspect(row));
   readonly #inspector = new Inspector(byId("inspector"), () => this.#closeInspector());
@@ -55,9 +59,15 @@ export class App {
     this.#now = now;
     document.title = `${place.session} \u2013 Agent server`;
     byId("reset-view").addEventListener("click", () => stage?.resetView());
-    this.#connection = new MonitorConnection(
+    const client = { name: "agent-server-page", version: __PAGE_VERSION__ };
+    this.#camera = new Camera(place, browserHost, client, this.#cameraPanel.video, () =>
+      this.#cameraPanel.render(this.#camera, browserHost.now()),
+    );
+    this.#cameraPanel.connect(this.#camera);
+    this.#cameraPanel.render(this.#camera, browserHost.now());
+    this.#connection = new Connection(
       place.monitorUrl,
-      { name: "agent-server-page", version: __PAGE_VERSION__, token: place.token },
+      { ...client, token: place.token },
       browserHost,
       {
         onMessage: (message) => this.#store.apply(message, this.#now),
@@ -97,6 +107,11 @@ export class App {
       pictures: this.#stage?.pictures ?? null,
       now: this.#now,
     });
+  }
+
+  /** What the page's own camera does. */
+  camera(): CameraState {
+    return this.#camera.state;
   }
 
   get #sensor() {
@@ -141,6 +156,7 @@ export class App {
     this.#log.render(store.log.rows);
     this.#counters.render(store.stats, store.welcome);
     this.#notice.render(this.#problem, browserHost.now());
+    this.#cameraPanel.render(this.#camera, browserHost.now());
     const isHeld = body !== null && body.gesture !== "idle" && body.outcome !== "unsure";
     setText(this.#spoken, isHeld ? sentenceCase(body.gesture) : "");
   }

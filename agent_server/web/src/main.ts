@@ -6,6 +6,7 @@ import "./styles/log.css";
 import "./styles/layout.css";
 
 import { App } from "./app.ts";
+import type { CameraState } from "./face/camera.ts";
 import { placeOf } from "./place.ts";
 import { Stage } from "./scene3d/stage.ts";
 import type { Summary } from "./state/summary.ts";
@@ -16,6 +17,7 @@ declare global {
     /** What browser tests drive the page with; `step` exists under `?step` only. */
     agentPage: {
       state(): Summary;
+      camera(): CameraState;
       step?(ms: number): void;
     };
   }
@@ -50,6 +52,7 @@ if (place.isStepped) {
   const app = new App(place, stage, now);
   window.agentPage = {
     state: () => app.summary(),
+    camera: () => app.camera(),
     step(ms) {
       now += ms;
       app.advance(now);
@@ -58,7 +61,7 @@ if (place.isStepped) {
   app.start();
 } else {
   const app = new App(place, stage, performance.now());
-  window.agentPage = { state: () => app.summary() };
+  window.agentPage = { state: () => app.summary(), camera: () => app.camera() };
   const frame = (): void => {
     app.advance(performance.now());
     requestAnimationFrame(frame);

@@ -5,14 +5,18 @@ export interface Place {
   readonly token: string | null;
   /** Whether time passes only in `window.agentPage.step`. */
   readonly isStepped: boolean;
+  /** Whether the camera's pictures are sent even where the page could read the face itself. */
+  readonly sendsPictures: boolean;
   readonly monitorUrl: string;
   readonly sensorUrl: string;
   readonly directoryUrl: string;
+  /** Folder of the networks that read a face. */
+  readonly modelsUrl: string;
 }
 
 /**
- * Read the address of the page: `?session=NAME`, `?step`, `#token=SECRET`. The server's paths are
- * relative to the page's own folder, so that both may live under any prefix.
+ * Read the address of the page: `?session=NAME`, `?step`, `?camera=jpeg`, `#token=SECRET`. The
+ * server's paths are relative to the page's own folder, so that both may live under any prefix.
  */
 export function placeOf(address: string): Place {
   const page = new URL(address);
@@ -26,8 +30,10 @@ export function placeOf(address: string): Place {
     session,
     token: new URLSearchParams(page.hash.slice(1)).get("token"),
     isStepped: page.searchParams.has("step"),
+    sendsPictures: page.searchParams.get("camera") === "jpeg",
     monitorUrl: socket("monitor"),
     sensorUrl: socket("sensor"),
     directoryUrl: new URL("v1/sessions", page).href,
+    modelsUrl: new URL("v1/models/", page).href,
   };
 }

@@ -1,5 +1,6 @@
 /**
- * The part of protocol 1 that a monitor speaks, as `agent_server/protocol/messages.py` has it.
+ * The part of protocol 1 that a monitor and a camera speak, as `agent_server/protocol/messages.py`
+ * has it.
  *
  * Time stamps (`*_ns`) are integer nanoseconds on the session's time line, below 2^53. Positions
  * are metres in the camera frame: y up, z away from the sensor, the person's right at larger x.
@@ -11,6 +12,7 @@ export const PROTOCOL_MAJOR = 1;
 export const SUBPROTOCOL = "agent-server.v1.json";
 
 export const CLOSE_WRONG_VERSION = 4401;
+export const CLOSE_REPLACED = 4409;
 
 export type Point = readonly [number, number, number];
 /** x, y, z and the confidence in [0, 1]. */
@@ -22,6 +24,36 @@ export interface Hello {
   readonly client: string;
   readonly client_version: string;
   readonly token?: string;
+  /** Sensors: a face follows. */
+  readonly face?: "expected";
+  /** Sensors: replace the one that sends the same. */
+  readonly take_over?: boolean;
+}
+
+/** The landmarks of one face, x, y, z each, in pixels of the picture. */
+export interface FacePoints {
+  readonly type: "face";
+  readonly format: "mesh478";
+  readonly width: number;
+  readonly height: number;
+  readonly points: readonly (readonly number[])[];
+  readonly originating_ns: number;
+}
+
+/** The next seconds show a neutral face, or this is what an earlier one came to. */
+export type Calibrate = {
+  readonly type: "calibrate";
+  readonly originating_ns: number;
+} & ({ readonly seconds: number } | { readonly valence: number; readonly arousal: number });
+
+/** What the person's neutral face is held to be. */
+export interface CalibrationState {
+  readonly type: "calibration_state";
+  readonly valence: number;
+  readonly arousal: number;
+  readonly faces: number;
+  /** False when too few faces were seen; what was in force is in force still. */
+  readonly is_done: boolean;
 }
 
 export interface Ping {
@@ -133,6 +165,11 @@ export interface AffectTelemetry {
   readonly originating_ns: number;
   readonly valence: number;
   readonly arousal: number;
+  /** Standard deviations, where the server estimated it. */
+  readonly valence_sd?: number | null;
+  readonly arousal_sd?: number | null;
+  /** What it was estimated from; a client's own word without it. */
+  readonly source?: string;
 }
 
 export interface AckTelemetry {
@@ -221,6 +258,7 @@ export type Telemetry =
   | PoseMessage
   | ForecastMessage
   | AffectTelemetry
+  | CalibrationState
   | AckTelemetry
   | DecisionMessage
   | StatsMessage;

@@ -1,14 +1,14 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 import { BACKOFF_BASE_MS, BACKOFF_CAP_MS } from "../src/net/backoff.ts";
-import { MonitorConnection, PING_EVERY_MS } from "../src/net/connection.ts";
+import { Connection, PING_EVERY_MS } from "../src/net/connection.ts";
 import { FakeHost, FakeListener, WELCOME, decision } from "./fakes.ts";
 
 const URL = "ws://host/v1/sessions/demo/monitor";
 
 let host: FakeHost;
 let listener: FakeListener;
-let connection: MonitorConnection;
+let connection: Connection;
 
 beforeEach(() => {
   host = new FakeHost();
@@ -16,8 +16,8 @@ beforeEach(() => {
   connection = connect(null);
 });
 
-function connect(token: string | null): MonitorConnection {
-  return new MonitorConnection(URL, { name: "page", version: "1.2", token }, host, listener);
+function connect(token: string | null): Connection {
+  return new Connection(URL, { name: "page", version: "1.2", token }, host, listener);
 }
 
 function goLive(): void {

@@ -17,6 +17,8 @@ interface Timer {
 
 export class FakeSocket implements Socket {
   readonly sent: Record<string, unknown>[] = [];
+  readonly sentBytes: Uint8Array[] = [];
+  backlog = 0;
   isClosed = false;
   readonly url: string;
   readonly subprotocol: string;
@@ -28,8 +30,9 @@ export class FakeSocket implements Socket {
     this.events = events;
   }
 
-  send(text: string): void {
-    this.sent.push(JSON.parse(text) as Record<string, unknown>);
+  send(data: string | Uint8Array): void {
+    if (typeof data === "string") this.sent.push(JSON.parse(data) as Record<string, unknown>);
+    else this.sentBytes.push(data);
   }
 
   close(): void {

@@ -32,6 +32,8 @@ test("the page's address says the session, the token and the server's paths", ()
     monitorUrl: "wss://host/some/prefix/v1/sessions/lab%201/monitor",
     sensorUrl: "wss://host/some/prefix/v1/sessions/lab%201/sensor",
     directoryUrl: "https://host/some/prefix/v1/sessions",
+    modelsUrl: "https://host/some/prefix/v1/models/",
+    sendsPictures: false,
   });
   const plain = placeOf("http://127.0.0.1:8765/");
   assert.equal(plain.session, "demo");

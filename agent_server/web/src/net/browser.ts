@@ -20,8 +20,11 @@ function openSocket(url: string, subprotocol: string, events: SocketEvents): Soc
   });
   socket.addEventListener("close", ({ code, reason }) => events.onClose(code, reason));
   return {
-    send(text) {
-      if (socket.readyState === WebSocket.OPEN) socket.send(text);
+    send(data) {
+      if (socket.readyState === WebSocket.OPEN) socket.send(data);
+    },
+    get backlog() {
+      return socket.bufferedAmount;
     },
     close: () => socket.close(),
   };

@@ -1,5 +1,5 @@
 /**
- * The monitor's side of one session: says hello, keeps the connection alive, comes back after a
+ * A client's side of one session: says hello, keeps the connection alive, comes back after a
  * loss. It knows no browser: sockets, timers, clock and chance come from a {@link Host}.
  */
 
@@ -16,7 +16,9 @@ import {
 import { BACKOFF_CAP_MS, fullJitter } from "./backoff.ts";
 
 export interface Socket {
-  send(text: string): void;
+  send(data: string | Uint8Array<ArrayBuffer>): void;
+  /** Bytes that were sent and have not left yet. */
+  readonly backlog: number;
   close(): void;
 }
 
@@ -62,11 +64,20 @@ export interface Listener {
   onStatus(status: Status): void;
 }
 
+/** How the page introduces itself. */
+export interface Client {
+  readonly name: string;
+  readonly version: string;
+  readonly token: string | null;
+  /** What a sensor has to say of itself. */
+  readonly sensor?: Pick<Hello, "face" | "take_over">;
+}
+
 export const PING_EVERY_MS = 2_000;
 const WELCOME_WITHIN_MS = 10_000;
 const PINGS_UNTIL_SILENT = 4;
 
-export class MonitorConnection {
+export class Connection {
   status: Status = { phase: "stopped", fault: null, retryAt: null, roundTripMs: null };
 
   readonly #url: string;
@@ -81,7 +92,7 @@ export class MonitorConnection {
 
   constructor(
     url: string,
-    client: { readonly name: string; readonly version: string; readonly token: string | null },
+    client: Client,
     host: Host,
     listener: Listener,
   ) {
@@ -94,6 +105,7 @@ export class MonitorConnection {
       client: client.name,
       client_version: client.version,
       ...(client.token === null ? {} : { token: client.token }),
+      ...client.sensor,
     };
   }
 
@@ -104,6 +116,18 @@ export class MonitorConnection {
   /** Do not wait any longer before the next attempt. */
   retryNow(): void {
     if (this.status.phase === "waiting") this.#open();
+  }
+
+  /** Bytes that wait to leave; what is not worth waiting for is better not sent meanwhile. */
+  get backlog(): number {
+    return this.#socket?.backlog ?? 0;
+  }
+
+  /** Send to the session; what comes while there is no live connection is lost. */
+  post(data: object | Uint8Array<ArrayBuffer>): void {
+    if (this.status.phase !== "live") return;
+    if (data instanceof Uint8Array) this.#socket?.send(data);
+    else this.#send(data);
   }
 
   stop(): void {

@@ -1,0 +1,58 @@
+"""A real browser on a page of the server."""
+
+import asyncio
+import shutil
+from contextlib import asynccontextmanager
+
+import pytest
+
+from agent_server import assets
+
+playwright = pytest.importorskip("playwright.async_api", reason="playwright is not installed")
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
+needs_browser = [
+    pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium on this machine"),
+    pytest.mark.skipif(
+        not (assets.page() / "index.html").exists(), reason="the page is not built: make page"
+    ),
+]
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+]
+
+
+@asynccontextmanager
+async def browsing(url, *flags, permissions=()):
+    """A page on ``url``, and everything that it asked for and complained about."""
+    async with playwright.async_playwright() as tool:
+        browser = await tool.chromium.launch(executable_path=CHROMIUM, args=[*FLAGS, *flags])
+        context = await browser.new_context(
+            viewport={"width": 1280, "height": 720}, permissions=list(permissions)
+        )
+        page = await context.new_page()
+        page.requested, page.complaints = [], []
+        page.on("request", lambda request: page.requested.append(request.url))
+        page.on("pageerror", lambda error: page.complaints.append(str(error)))
+        await page.goto(url)
+        try:
+            yield page
+        finally:
+            await browser.close()
+
+
+async def until(page, condition, within_s=20.0):
+    """Step the page until its state fits ``condition``, and give that state."""
+    async with asyncio.timeout(within_s):
+        while True:
+            await page.evaluate("window.agentPage.step(100)")
+            state = await page.evaluate("window.agentPage.state()")
+            if condition(state):
+                return state
+            await asyncio.sleep(0.05)
