@@ -9,10 +9,9 @@ from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from agent_server import __version__
-from agent_server.bench.figures import percentiles
+from agent_server.bench.figures import percentiles, resident_mb
 from agent_server.bench.stream import recorded_frames
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import AgentServerError
@@ -68,7 +67,7 @@ async def measure_load(sessions: int, seconds: float) -> LoadResult:
                     begin_s = max(start_s, time.monotonic()) + (index * 0.618 % 1.0) / 5
                     person = _Person(frames, begin_s, seconds, tally)
                     group.create_task(person.run(monitor, sensor, f"load-{index}"))
-            rss_mb = _resident_mb(process.pid)
+            rss_mb = resident_mb(process.pid)
     if not tally.latencies_ms:
         raise AgentServerError("no decision came back, so nothing was measured")
     figures = percentiles(tally.latencies_ms)
@@ -149,13 +148,3 @@ async def _server() -> AsyncIterator[tuple[Process, str]]:
         if process.returncode is None:
             process.terminate()
         await process.wait()
-
-
-def _resident_mb(pid: int) -> float | None:
-    status = Path(f"/proc/{pid}/status")
-    if not status.exists():
-        return None
-    for line in status.read_text("ascii").splitlines():
-        if line.startswith("VmRSS:"):
-            return round(int(line.split()[1]) / 1024, 1)
-    return None

@@ -7,6 +7,7 @@ import msgspec
 import typer
 
 from agent_server.bench.decision import measure_decisions
+from agent_server.bench.face import measure_faces
 from agent_server.bench.ingest import measure_ingest
 from agent_server.bench.load import LoadResult, measure_load
 from agent_server.bench.reactions import measure_reactions, played, recorded
@@ -35,6 +36,19 @@ def decision(
     models = load_models()
     rules = load_room(Settings(), models)
     _show(measure_decisions(models, rules, rounds), as_json=as_json)
+
+
+@bench.command()
+def face(
+    image: Annotated[
+        Path | None,
+        typer.Argument(metavar="IMAGE", help="Picture of a face; else one is painted."),
+    ] = None,
+    rounds: Annotated[int, typer.Option(min=1, help="How often to measure each stage.")] = 200,
+    as_json: JsonOption = False,
+) -> None:
+    """One image of a face, stage by stage, on one thread."""
+    _show(measure_faces(image, rounds), as_json=as_json)
 
 
 @bench.command()
