@@ -103,6 +103,7 @@ def _merge(places: Float32, scores: Float32) -> list[Detection]:
     left = np.argsort(-scores)
     while len(left):
         overlaps = _overlap(places[left[0], :2], places[left, :2])
+        overlaps[0] = 1.0  # the best with itself, even if it has no area
         same = left[overlaps > MIN_OVERLAP]
         weights = scores[same] / scores[same].sum()
         low, high, *keypoints = np.einsum("k,kpa->pa", weights, places[same])
@@ -118,9 +119,8 @@ def _overlap(box: Float32, boxes: Float32) -> Float32:
     shared = np.clip(high - low, 0, None).prod(axis=1)
     areas = (boxes[:, 1] - boxes[:, 0]).prod(axis=1)
     own = (box[1] - box[0]).prod()
-    result: Float32 = shared / (own + areas - shared)
-    # A box always overlaps itself, even one without an area.
-    result[0] = 1.0
+    union = own + areas - shared
+    result: Float32 = np.divide(shared, union, out=np.zeros_like(shared), where=union > 0)
     return result
 
 

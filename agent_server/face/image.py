@@ -51,7 +51,7 @@ def decode_jpeg(data: bytes) -> Pixels:
     # What a camera sends is upright, so a note on its orientation is not followed.
     flags = cv2.IMREAD_COLOR_RGB | cv2.IMREAD_IGNORE_ORIENTATION
     image = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
-    if image is None:
+    if image is None or image.shape != (height, width, 3):
         raise _bad("it is damaged")
     return image.astype(np.uint8, copy=False)
 
@@ -66,9 +66,10 @@ def jpeg_size(data: bytes) -> tuple[int, int]:
         raise _bad("it does not begin as a JPEG does")
     at = len(_START)
     while at + 9 <= len(data):
-        if data[at] != 0xFF:
-            break
         marker = data[at + 1]
+        # Behind such bytes a decoder searches on, and might find another size than is seen here.
+        if data[at] != 0xFF or marker == 0x00:
+            break
         if marker == 0xFF:
             at += 1
         elif marker in _WITHOUT_LENGTH:

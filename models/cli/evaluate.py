@@ -33,6 +33,7 @@ from models.evaluation.affect import affect_report, read_affect
 from models.evaluation.affect_page import write_affect_page
 from models.evaluation.forecasters import bundled, forecaster
 from models.evaluation.gesture_page import write_gesture_page
+from models.evaluation.landmarks import compare_with_mediapipe, on_one_core
 from models.evaluation.latency import bundle_latency
 from models.evaluation.msrc12_stream import msrc12_stream_report
 from models.evaluation.msrc12_windows import msrc12_report
@@ -42,6 +43,7 @@ from models.evaluation.real_streams import shipped_report
 from models.evaluation.report import classifier_report, compare, server_report
 from models.evaluation.sim2real import sim2real_report
 from models.evaluation.thesis import thesis_report
+from models.export.face import landmarker_file
 from models.ops.session import OnnxModel
 
 app = typer.Typer(no_args_is_help=True, help="Measure a bundle.")
@@ -104,6 +106,20 @@ def evaluate_affect(
     if report is not None:
         print(write_affect_page(reading, source, report), file=sys.stderr)
     show(affect_report(reading), as_json)
+
+
+@app.command("landmarks")
+def evaluate_landmarks(
+    data: DataOption,
+    wheels: Annotated[
+        Path | None, typer.Option(help="Folder of the packages' wheels; fetched if left out.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Our landmarks and blendshapes against the real MediaPipe, and the time of both."""
+    on_one_core()
+    task_file = landmarker_file(wheels)
+    show(compare_with_mediapipe(read_faces(data), ARTIFACTS, task_file), as_json)
 
 
 @app.command("gestures")

