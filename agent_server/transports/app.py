@@ -92,12 +92,12 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
         }
 
     @app.get("/v1/models/{name}/{file}")
-    async def face_network(name: str, file: str) -> Response:
+    async def face_network(name: str, file: str, sha256: str = "") -> Response:
         """A face network, for browsers that read faces themselves."""
         if name not in PAGE_NETWORKS or file not in (MANIFEST_FILE, MODEL_FILE):
             return JSONResponse({"detail": "there is no such file of a face network"}, 404)
-        # A model's address carries its hash, a manifest's does not.
-        cache = FOR_GOOD if file == MODEL_FILE else "no-cache"
+        # What is asked for by its hash never changes.
+        cache = FOR_GOOD if sha256 else "no-cache"
         return FileResponse(assets.bundles() / name / file, headers={"Cache-Control": cache})
 
     if (page / "index.html").exists():

@@ -59,6 +59,11 @@ async def switched_on(page, condition, within_s=60.0):
     """Switch the camera on and wait until its state fits."""
     await until(page, lambda s: s["connection"]["phase"] == "live")
     await page.click("text=Use my camera")
+    return await camera_state(page, condition, within_s)
+
+
+async def camera_state(page, condition, within_s=20.0):
+    """Wait until the camera's state fits."""
     async with asyncio.timeout(within_s):
         while not condition(  # noqa: ASYNC110 - the page announces nothing
             state := await page.evaluate("window.agentPage.camera()")
@@ -194,10 +199,57 @@ async def test_another_sensors_face_is_not_pushed_aside_unasked(film):
         browsing(f"{server.url}/?session=cam&step", *flags, permissions=["camera"]) as page,
     ):
         await other.send(m.Affect(0, 1.0, 1.0))
-        await switched_on(page, lambda camera: camera["isTaken"])
+        await switched_on(page, lambda camera: camera["link"] == "taken")
+        # The page is told once, and leaves it at that.
+        assert server.hub.sessions["cam"].counters["rejected_messages"] == 1
+        await page.evaluate("window.agentPage.step(300)")
         assert "Another sensor sends" in await words(page)
         await page.click("text=Send mine instead")
         state = await until(
             page, lambda s: s["affect"] is not None and s["affect"]["valence"] > 1.5, within_s=60
         )
         assert state["affect"]["arousal"] > 0
+
+
+@needs_faces
+async def test_a_place_that_is_taken_over_is_left(film):
+    flags, _ = film(**HAPPY)
+    async with (
+        live(load_models()) as server,
+        browsing(f"{server.url}/?session=cam&step", *flags, permissions=["camera"]) as page,
+    ):
+        await switched_on(page, lambda camera: camera["hasFace"] and camera["rateHz"] > 0)
+        hello = m.Hello(m.PROTOCOL, "tester", take_over=True)
+        async with server.join("sensor", "cam", hello=hello) as other:
+            await other.send(m.Affect(0, 1.0, 1.0))
+            await camera_state(page, lambda camera: camera["link"] == "replaced")
+            await page.evaluate("window.agentPage.step(300)")
+            assert "Another sensor has taken over" in await words(page)
+            (sensor,) = server.hub.sessions["cam"].audience.having("sensor")
+            assert sensor.hello.client == "tester"
+
+
+@needs_faces
+async def test_a_neutral_face_is_learnt_kept_and_forgotten(film):
+    flags, _ = film(**HAPPY)
+    async with (
+        live(load_models()) as server,
+        browsing(f"{server.url}/?session=cam&step", *flags, permissions=["camera"]) as page,
+    ):
+        await switched_on(page, lambda camera: camera["hasFace"])
+        before = (await until(page, lambda s: s["affect"] is not None))["affect"]["valence"]
+        assert before > 1
+        await page.evaluate("window.agentPage.step(300)")
+        await page.click("text=My face is neutral")
+        assert "Look neutral" in await words(page)
+        state = await camera_state(page, lambda camera: camera["neutral"] is not None)
+        assert "is known now" in await words(page)
+        assert abs(state["neutral"]["valence"] - before) < 1
+        # What was neutral is the middle of the plane.
+        await until(page, lambda s: abs(s["affect"]["valence"]) < 1)
+        await page.reload()
+        await switched_on(page, lambda camera: camera["hasFace"])
+        await until(page, lambda s: s["affect"] is not None and abs(s["affect"]["valence"]) < 1)
+        await page.click("text=Forget it")
+        await until(page, lambda s: s["affect"]["valence"] > 1)
+        assert await page.evaluate("Object.keys(localStorage)") == []

@@ -59,7 +59,11 @@ export class App {
     this.#now = now;
     document.title = `${place.session} \u2013 Agent server`;
     byId("reset-view").addEventListener("click", () => stage?.resetView());
-    const client = { name: "agent-server-page", version: __PAGE_VERSION__ };
+    const client = {
+      name: "agent-server-page",
+      version: __PAGE_VERSION__,
+      token: place.token,
+    };
     this.#camera = new Camera(place, browserHost, client, this.#cameraPanel.video, () =>
       this.#cameraPanel.render(this.#camera, browserHost.now()),
     );
@@ -67,7 +71,7 @@ export class App {
     this.#cameraPanel.render(this.#camera, browserHost.now());
     this.#connection = new Connection(
       place.monitorUrl,
-      { ...client, token: place.token },
+      client,
       browserHost,
       {
         onMessage: (message) => this.#store.apply(message, this.#now),
@@ -119,7 +123,9 @@ export class App {
   }
 
   get #problem() {
-    return problemOf(this.#connection.status, this.#directory, this.#sensor, this.#place);
+    const { status } = this.#connection;
+    const hasCamera = this.#camera.state.link === "live";
+    return problemOf(status, this.#directory, this.#sensor, this.#place, hasCamera);
   }
 
   #showBody(dtMs: number): void {

@@ -45,7 +45,13 @@ test("the trail of affect holds four seconds", () => {
 
 test("affect is stale after a while, and when the gate found no usable face", () => {
   store.apply(affect(1_000, -4, 5), 1_000);
-  assert.deepEqual(affectNow(store, 1_500), { valence: -4, arousal: 5, isFresh: true });
+  assert.deepEqual(affectNow(store, 1_500), {
+    valence: -4,
+    arousal: 5,
+    isFresh: true,
+    spread: null,
+    source: "client",
+  });
   assert.equal(affectNow(store, 2_600)?.isFresh, false);
   const blind = { mode: "required", is_open: false, reason: "the face is stale" } as const;
   const gate = { ...blind, valence: null, arousal: null, age_ms: 1_200 };

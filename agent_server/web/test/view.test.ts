@@ -61,7 +61,7 @@ test("the sensor is live while poses come, else what the directory says", () => 
 test("each trouble is named, with the address or the server's own words", () => {
   const unknown: Directory = { kind: "unknown" };
   const ask = (status: Status, directory: Directory = unknown, sensor: SensorState = "live") =>
-    problemOf(status, directory, sensor, place);
+    problemOf(status, directory, sensor, place, false);
   assert.equal(ask(live), null);
   assert.equal(ask({ ...live, phase: "opening" })?.kind, "connecting");
   assert.match(ask(live, listed(false), "none")?.text ?? "", /lab%201\/sensor/);
@@ -80,8 +80,8 @@ test("each trouble is named, with the address or the server's own words", () => 
 test("a server that answers but opens no session is told from one that is gone", () => {
   const fault = waiting({ kind: "unreachable" });
   const other: Directory = { kind: "listed", sessions: [{ id: "kitchen", sensor: true }] };
-  assert.match(problemOf(fault, other, "live", place)?.text ?? "", /kitchen/);
-  const token = problemOf(fault, { kind: "refused", status: 401 }, "live", place);
+  assert.match(problemOf(fault, other, "live", place, false)?.text ?? "", /kitchen/);
+  const token = problemOf(fault, { kind: "refused", status: 401 }, "live", place, false);
   assert.match(token?.title ?? "", /token/);
 });
 
@@ -134,4 +134,11 @@ test("names and numbers in words", () => {
   const scene = { mode: "working", rule: "r", precondition: "window = open", met: true, reason: "" };
   const command = { ...quiet, outcome: "command", gesture: "cold", reason: "cold: free", scene };
   assert.equal(reasonOf(command), "Window = open, free");
+});
+
+test("a page whose camera is the only sensor asks for a body, not for a sensor", () => {
+  const asked = problemOf(live, listed(true), "no_body", place, true);
+  assert.equal(asked?.kind, "no_body");
+  assert.match(asked?.text ?? "", /camera of this page sends the face/);
+  assert.equal(problemOf(live, listed(true), "live", place, true), null);
 });

@@ -11,7 +11,10 @@ RIGHT_EYE, LEFT_EYE, NOSE = 0, 1, 2
 
 
 class Anchors:
-    """A detector network that is sure of some anchors, with a box of a quarter of the image."""
+    """A detector network that is sure of some anchors.
+
+    Boxes are a quarter of the image wide, but the one of anchor 511, which is twice as large.
+    """
 
     name = "anchors"
     sha256 = "0" * 64
@@ -28,6 +31,7 @@ class Anchors:
         scores[0, self.sure, 0] = self.logits
         boxes = np.zeros((1, 896, 16), dtype=np.float32)
         boxes[..., 2:4] = self.size
+        boxes[0, 511, 2:4] *= 2
         boxes[..., 4:] = np.arange(12)
         return {"scores": scores, "boxes": boxes}
 
@@ -98,7 +102,7 @@ def test_a_grey_picture_of_a_face_shows_a_face(networks, painted):
         (1, (0.5 / 16, 0.5 / 16)),  # two anchors a cell
         (2, (1.5 / 16, 0.5 / 16)),  # x first
         (32, (0.5 / 16, 1.5 / 16)),
-        (511, (15.5 / 16, 15.5 / 16)),
+        (510, (15.5 / 16, 15.5 / 16)),
         (512, (0.5 / 8, 0.5 / 8)),
         (517, (0.5 / 8, 0.5 / 8)),  # six of them
         (518, (1.5 / 8, 0.5 / 8)),
@@ -141,6 +145,13 @@ def test_overlapping_boxes_are_averaged_by_their_scores():
 def test_boxes_apart_stay_apart():
     found = FaceDetector(Anchors(0, 511)).detect(np.zeros((128, 128, 3), np.uint8))
     assert sorted(float(middle(each)[0]) for each in found) == pytest.approx([4, 124])
+
+
+def test_the_larger_face_comes_before_the_surer_one():
+    network = Anchors(0, 511, logits=[5.0, 0.5])
+    first, second = FaceDetector(network).detect(np.zeros((128, 128, 3), np.uint8))
+    assert first.score < second.score
+    assert first.area == pytest.approx(4 * second.area)
 
 
 def test_boxes_without_an_area_harm_nobody():

@@ -90,7 +90,7 @@ def test_a_size_cannot_be_hidden_behind_bytes_that_a_decoder_skips():
     assert found is not None
     assert found.shape == (800, 1400, 3), "OpenCV takes the large one"
     with pytest.raises(InvalidInput) as caught:
-        decode_jpeg(hidden)
+        jpeg_size(hidden)
     assert caught.value.code == "bad_image"
 
 

@@ -5,8 +5,10 @@ import type { Picture } from "./picture.ts";
 export type ToWorker =
   /** Load the networks; `modelsUrl` is the folder of the server's models. */
   | { readonly kind: "open"; readonly modelsUrl: string }
-  /** Look for the face in a picture taken at `capturedAt`, in milliseconds; one at a time. */
-  | { readonly kind: "picture"; readonly picture: Picture; readonly capturedAt: number };
+  /** Answers `ask`: look for the face in a picture taken at `capturedAt`, in milliseconds. */
+  | { readonly kind: "picture"; readonly picture: Picture; readonly capturedAt: number }
+  /** Answers `ask`: there is no new picture yet. */
+  | { readonly kind: "nothing" };
 
 /** What came of a picture. */
 export interface Looked {
@@ -20,5 +22,5 @@ export interface Looked {
 }
 
 export type FromWorker =
-  /** The networks are loaded. */
-  { readonly kind: "ready" } | Looked | { readonly kind: "failed"; readonly message: string };
+  /** The worker has time for a picture; the first time, its networks are loaded. */
+  { readonly kind: "ask" } | Looked | { readonly kind: "failed"; readonly message: string };

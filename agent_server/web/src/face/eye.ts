@@ -51,7 +51,12 @@ export class Eye {
     for (const track of stream.getVideoTracks()) track.addEventListener("ended", onLost);
     const eye = new Eye(video, stream);
     video.srcObject = stream;
-    await video.play();
+    try {
+      await video.play();
+    } catch (error) {
+      eye.close();
+      throw new CameraError("unknown", error);
+    }
     return eye;
   }
 

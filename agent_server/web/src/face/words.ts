@@ -30,7 +30,16 @@ export function cameraWords(state: CameraState, now: number): string {
 }
 
 function running(state: CameraState, now: number): string {
-  if (state.isTaken) return "Another sensor sends this session's face.";
+  switch (state.link) {
+    case "taken":
+      return "Another sensor sends this session's face already.";
+    case "replaced":
+      return "Another sensor has taken over this session's face.";
+    case "opening":
+    case "waiting":
+      return "Not connected to the session. What the camera sees goes nowhere meanwhile.";
+    case "live":
+  }
   if (state.neutralUntil !== null) {
     const left = Math.max(1, Math.ceil((state.neutralUntil - now) / 1000));
     return `Look neutral, as you do when nothing happens: ${left} of ${NEUTRAL_S} s.`;

@@ -224,13 +224,14 @@ export class Connection {
     const isRefusal = fault.kind === "refused" || fault.kind === "version";
     const delayMs = isRefusal ? BACKOFF_CAP_MS : fullJitter(this.#attempt, this.#host.random);
     this.#attempt += 1;
+    // First the timer: whoever hears of the loss may stop the connection for good.
+    this.#later(delayMs, () => this.#open());
     this.#enter({
       phase: "waiting",
       fault,
       retryAt: this.#host.now() + delayMs,
       roundTripMs: null,
     });
-    this.#later(delayMs, () => this.#open());
   }
 
   #drop(): void {

@@ -3,7 +3,7 @@
 import type { AffectTelemetry, GateLevels, GateVerdict } from "../protocol.ts";
 import type { Timed } from "../state/store.ts";
 import type { Affect } from "../state/view.ts";
-import { level, sentenceCase } from "../state/words.ts";
+import { level, sentenceCase, sourceWord } from "../state/words.ts";
 import { h, setState, setText, svg } from "../ui/dom.ts";
 
 const LIMIT = 10;
@@ -20,11 +20,13 @@ export class AffectPanel {
   readonly #gate = svg("g");
   readonly #trail = svg("g", { class: "trail" });
   readonly #point = svg("circle", { class: "point", r: 6 });
+  readonly #spread = svg("ellipse", { class: "spread" });
   readonly #halo = svg("circle", { class: "halo", r: 12 });
   readonly #verdict = h("p", { class: "verdict" });
   readonly #reason = h("p", { class: "reason" });
   readonly #valence = h("dd");
   readonly #arousal = h("dd");
+  readonly #source = h("dd");
   #drawn = "";
 
   constructor(root: HTMLElement, mode: HTMLElement) {
@@ -47,6 +49,7 @@ export class AffectPanel {
       label(HALF - 6, -6, "end", "pleasant"),
       label(6, -HALF + 18, "start", "excited"),
       label(6, HALF - 8, "start", "calm"),
+      this.#spread,
       this.#trail,
       this.#halo,
       this.#point,
@@ -63,6 +66,7 @@ export class AffectPanel {
           { class: "levels" },
           h("div", {}, h("dt", {}, "Valence"), this.#valence),
           h("div", {}, h("dt", {}, "Arousal"), this.#arousal),
+          h("div", {}, h("dt", {}, "Read from"), this.#source),
         ),
       ),
     );
@@ -92,6 +96,7 @@ export class AffectPanel {
     const isSeen = affect !== null && affect.isFresh;
     setText(this.#valence, isSeen ? level(affect.valence) : "no face");
     setText(this.#arousal, isSeen ? level(affect.arousal) : "no face");
+    setText(this.#source, isSeen ? sourceWord(affect.source) : "\u2013");
   }
 
   #drawPoint(affect: Affect | null, trail: readonly Timed<AffectTelemetry>[], now: number): void {
@@ -102,6 +107,7 @@ export class AffectPanel {
       circle.setAttribute("cx", at(affect.valence).toFixed(1));
       circle.setAttribute("cy", at(-affect.arousal).toFixed(1));
     }
+    this.#drawSpread(affect);
     // Evenly thinned, so that a fast face and a slow one leave trails of the same length in time.
     const recent = trail.filter((sample) => now - sample.at <= TRAIL_MS);
     const stride = Math.max(1, recent.length / TRAIL_DOTS);
@@ -117,6 +123,17 @@ export class AffectPanel {
       dot.setAttribute("r", (0.8 + 2.2 * youth).toFixed(2));
       dot.setAttribute("opacity", (0.7 * youth).toFixed(2));
     }
+  }
+
+  /** One standard deviation to each side. */
+  #drawSpread(affect: Affect | null): void {
+    const spread = affect !== null && affect.isFresh ? affect.spread : null;
+    this.#spread.setAttribute("visibility", spread === null ? "hidden" : "visible");
+    if (affect === null || spread === null) return;
+    this.#spread.setAttribute("cx", at(affect.valence).toFixed(1));
+    this.#spread.setAttribute("cy", at(-affect.arousal).toFixed(1));
+    this.#spread.setAttribute("rx", at(spread.valence).toFixed(1));
+    this.#spread.setAttribute("ry", at(spread.arousal).toFixed(1));
   }
 
   #drawGate(levels: GateLevels): void {

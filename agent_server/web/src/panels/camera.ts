@@ -48,10 +48,10 @@ export class CameraPanel {
     setState(this.#root, "phase", state.phase);
     setText(this.#words, cameraWords(state, clock));
     setText(this.#toggle, isOn ? "Stop the camera" : "Use my camera");
-    const isRunning = state.phase === "running" && !state.isTaken;
-    this.#takeOver.hidden = !state.isTaken;
-    this.#neutral.hidden = !isRunning || state.neutralUntil !== null;
-    this.#forget.hidden = !isRunning || state.neutral === null;
+    const isLive = state.phase === "running" && state.link === "live";
+    this.#takeOver.hidden = state.link !== "taken" && state.link !== "replaced";
+    this.#neutral.hidden = !isLive || state.neutralUntil !== null;
+    this.#forget.hidden = !isLive || state.neutral === null;
     setAttribute(this.#forget, "title", "Forget how your face looks when it is neutral");
     setAttribute(this.#neutral, "title", "Makes the face you have now the middle of the plane");
     this.#draw(camera);

@@ -16,6 +16,10 @@ export interface Affect {
   readonly arousal: number;
   /** False while no face is in use: the values are those of the last face. */
   readonly isFresh: boolean;
+  /** Standard deviations, or null where the sensor gave the affect itself. */
+  readonly spread: { readonly valence: number; readonly arousal: number } | null;
+  /** What it was read from: `client`, `mesh`, `points68` or `blendshapes`. */
+  readonly source: string;
 }
 
 /** Something that keeps the page from showing a live session, and what to do about it. */
@@ -55,11 +59,17 @@ export function sensorState(
 export function affectNow(store: Store, now: number): Affect | null {
   const latest = store.affect.at(-1) ?? null;
   if (latest === null) return null;
-  const { valence, arousal, originating_ns } = latest.value;
+  const { valence, arousal, originating_ns, valence_sd, arousal_sd, source } = latest.value;
   const decision = store.decision?.value.decision;
   const isRefused =
     decision !== undefined && decision.end_ns > originating_ns && decision.gate.valence === null;
-  return { valence, arousal, isFresh: isFresh(latest, now) && !isRefused };
+  return {
+    valence,
+    arousal,
+    isFresh: isFresh(latest, now) && !isRefused,
+    spread: valence_sd == null || arousal_sd == null ? null : { valence: valence_sd, arousal: arousal_sd },
+    source: source ?? "client",
+  };
 }
 
 /** The decision that still speaks of the present, or null. */
@@ -67,11 +77,13 @@ export function decisionNow(store: Store, now: number): DecisionMessage | null {
   return isFresh(store.decision, now) ? store.decision.value : null;
 }
 
+/** @param hasCamera Whether this page is a sensor of the session itself. */
 export function problemOf(
   status: Status,
   directory: Directory,
   sensor: SensorState,
   place: Place,
+  hasCamera: boolean,
 ): Problem | null {
   const { phase, fault, retryAt } = status;
   if (phase !== "live") {
@@ -92,6 +104,16 @@ export function problemOf(
       text:
         `Session \u201c${place.session}\u201d has no sensor yet. ` +
         `Connect one to ${place.sensorUrl}, or send a recording there with agent-server replay.`,
+      retryAt: null,
+    };
+  }
+  if (sensor === "no_body" && hasCamera) {
+    return {
+      kind: "no_body",
+      title: "A face, but no body",
+      text:
+        "The camera of this page sends the face. The body comes from a sensor of its own: " +
+        `connect one to ${place.sensorUrl}, or send a recording there with agent-server replay.`,
       retryAt: null,
     };
   }

@@ -13,6 +13,18 @@ const OUTCOMES: Readonly<Record<string, string>> = {
   nothing_to_do: "Nothing to do",
 };
 
+const SOURCES: Readonly<Record<string, string>> = {
+  client: "sensor",
+  mesh: "landmarks",
+  points68: "68 landmarks",
+  blendshapes: "blendshapes",
+};
+
+/** What affect was read from; `client` is a sensor that gives valence and arousal itself. */
+export function sourceWord(source: string): string {
+  return SOURCES[source] ?? sentenceCase(source);
+}
+
 /** `close_window` -> `Close window`. */
 export function sentenceCase(name: string): string {
   const words = name.replaceAll("_", " ").replaceAll("hifi", "hi-fi");

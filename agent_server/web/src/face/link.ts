@@ -1,0 +1,86 @@
+/** The camera's place in the session: kept while nobody else sends the face, given up otherwise. */
+
+import { Connection, type Client, type Host } from "../net/connection.ts";
+import { CLOSE_REPLACED, type CalibrationState, type ErrorMessage } from "../protocol.ts";
+
+export type LinkState =
+  | "opening"
+  | "live"
+  /** The connection is gone; it comes back by itself. */
+  | "waiting"
+  /** Another sensor sent the face already. */
+  | "taken"
+  /** Another sensor took over. */
+  | "replaced";
+
+export interface LinkEvents {
+  onState(state: LinkState): void;
+  onCalibration(calibration: CalibrationState): void;
+  /** The server refused something that was sent. */
+  onRefusal(error: ErrorMessage): void;
+}
+
+/** With more than this waiting to leave, what is new is better left out. */
+const MAX_BACKLOG = 100_000;
+
+export class SensorLink {
+  state: LinkState = "opening";
+
+  readonly #connection: Connection;
+  readonly #events: LinkEvents;
+
+  /** @param takesOver Whether to push aside a sensor that sends the face already. */
+  constructor(
+    url: string,
+    client: Omit<Client, "sensor">,
+    takesOver: boolean,
+    host: Host,
+    events: LinkEvents,
+  ) {
+    this.#events = events;
+    const sensor = { face: "expected", ...(takesOver ? { take_over: true } : {}) } as const;
+    this.#connection = new Connection(url, { ...client, sensor }, host, {
+      onMessage: (message) => {
+        if (message.type === "calibration_state") events.onCalibration(message);
+        else if (message.type === "error") this.#refused(message);
+      },
+      onStatus: ({ phase, fault }) => {
+        // Coming back would push aside the one that has just taken over.
+        if (fault?.kind === "lost" && fault.code === CLOSE_REPLACED) this.#leave("replaced");
+        else if (phase === "live" || phase === "waiting") this.#enter(phase);
+      },
+    });
+  }
+
+  start(): void {
+    this.#connection.start();
+  }
+
+  /** Send unless it would have to wait; tells whether it went out. */
+  post(data: object | Uint8Array<ArrayBuffer>): boolean {
+    if (this.state !== "live" || this.#connection.backlog >= MAX_BACKLOG) return false;
+    this.#connection.post(data);
+    return true;
+  }
+
+  close(): void {
+    this.#connection.stop();
+  }
+
+  #refused(error: ErrorMessage): void {
+    if (error.code === "stream_taken") this.#leave("taken");
+    else this.#events.onRefusal(error);
+  }
+
+  #leave(state: "taken" | "replaced"): void {
+    if (this.state === state) return;
+    this.#enter(state);
+    this.#connection.stop();
+  }
+
+  #enter(state: LinkState): void {
+    if (this.state === state || this.state === "taken" || this.state === "replaced") return;
+    this.state = state;
+    this.#events.onState(state);
+  }
+}
