@@ -6,6 +6,7 @@ One implementation for training and for the server, batched over leading axes.
 import numpy as np
 
 from agent_server.domain.arrays import Float32, Float64
+from agent_server.errors import InvalidInput
 
 SHARED_POINTS = 468
 """Points that both meshes have; the irises of the larger one are left out."""
@@ -36,6 +37,9 @@ def mesh_features(points: Float32) -> Float32:
 
     Returns:
         Shape (..., 936): x and y of the first 468 points, seen from the front.
+
+    Raises:
+        InvalidInput: If the points are no face: the eyes, or forehead and nose, lie on each other.
     """
     front, size, _ = front_view(points[..., :SHARED_POINTS, :])
     return _flat(front[..., :2] / size)
@@ -50,6 +54,9 @@ def front_view(points: Float32) -> tuple[Float64, Float64, Float64]:
     Returns:
         Points of the same shape; the size (..., 1, 1) of each head, the root mean square distance
         of its rigid points; and its axes (..., 3, 3), the rows, in the given space.
+
+    Raises:
+        InvalidInput: As ``mesh_features`` does.
     """
     mesh = np.asarray(points, dtype=np.float64)
     rigid = mesh[..., _RIGID_MESH, :]
@@ -72,12 +79,15 @@ def points68_features(points: Float32) -> Float32:
 
     Returns:
         Shape (..., 136).
+
+    Raises:
+        InvalidInput: If the points are no face: the eyes lie on each other.
     """
     flat = np.asarray(points, dtype=np.float64)
     rigid = flat[..., _RIGID_68, :]
     centre = rigid.mean(axis=-2, keepdims=True)
     across = flat[..., 42:48, :].mean(axis=-2) - flat[..., 36:42, :].mean(axis=-2)
-    across = across / np.linalg.norm(across, axis=-1, keepdims=True)
+    across = _unit(across)
     # Rows: along the eyes, and down.
     axes = np.stack((across, np.stack((-across[..., 1], across[..., 0]), axis=-1)), axis=-2)
     level = (flat - centre) @ np.swapaxes(axes, -1, -2)
@@ -101,10 +111,21 @@ def blendshape_features(values: Float32) -> Float32:
 
 def _frame(across: Float64, down: Float64) -> Float64:
     """Axes (..., 3, 3): the first along ``across``, the second near ``down``."""
-    first = across / np.linalg.norm(across, axis=-1, keepdims=True)
-    second = down - (down * first).sum(axis=-1, keepdims=True) * first
-    second = second / np.linalg.norm(second, axis=-1, keepdims=True)
+    first = _unit(across)
+    second = _unit(down - (down * first).sum(axis=-1, keepdims=True) * first)
     return np.stack((first, second, np.cross(first, second)), axis=-2)
+
+
+def _unit(vectors: Float64) -> Float64:
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    if not (lengths > 0).all():
+        raise InvalidInput(
+            "points has no face: its eyes, or its forehead and nose, lie on each other; "
+            "send landmarks only while a face is found",
+            field="points",
+        )
+    unit: Float64 = vectors / lengths
+    return unit
 
 
 def _flat(points: Float64) -> Float32:
