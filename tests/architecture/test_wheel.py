@@ -27,6 +27,9 @@ def test_the_wheel_carries_bundles_page_rules_and_the_demo(wheel):
     for needed in (
         "agent_server/assets/bundles/ma_wgan_server/model.onnx",
         "agent_server/assets/bundles/interformer_server/manifest.json",
+        "agent_server/assets/bundles/face_mesh/model.onnx",
+        "agent_server/assets/bundles/affect_mesh/model.onnx",
+        "agent_server/synthetic/face_shapes.npz",
         "agent_server/assets/page/index.html",
         "agent_server/assets/streams/demo.mcap",
         "agent_server/scene/room.toml",
