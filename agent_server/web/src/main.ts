@@ -1,5 +1,6 @@
 import "./styles/base.css";
 import "./styles/view.css";
+import "./styles/camera.css";
 import "./styles/panels.css";
 import "./styles/room.css";
 import "./styles/log.css";

@@ -17,7 +17,7 @@ const FAULTS: Record<CameraFault, string> = {
 export function cameraWords(state: CameraState, now: number): string {
   switch (state.phase) {
     case "off":
-      return "Off. Landmarks are read in this page; pictures do not leave it.";
+      return "Reads your face in this page; pictures do not leave it.";
     case "asking":
       return "The browser asks you whether this page may use the camera.";
     case "loading":

@@ -25,7 +25,7 @@ export class CameraPanel {
         "div",
         { class: "camera-side" },
         this.#words,
-        h("p", { class: "camera-row" }, this.#toggle, this.#takeOver, this.#neutral, this.#forget),
+        h("div", { class: "camera-row" }, this.#toggle, this.#takeOver, this.#neutral, this.#forget),
       ),
     );
   }
@@ -67,8 +67,10 @@ export class CameraPanel {
     const context = canvas.getContext("2d");
     const points = latest?.points ?? null;
     if (context === null || points === null) return;
-    context.strokeStyle = "rgba(126, 231, 210, 0.9)";
-    context.lineWidth = Math.max(1, canvas.width / 200);
+    // Amber is the face, as everywhere on the page.
+    context.strokeStyle = getComputedStyle(canvas).color;
+    context.lineWidth = canvas.width / 160;
+    context.lineJoin = "round";
     for (const contour of CONTOURS) {
       context.beginPath();
       for (const i of contour) context.lineTo(points[3 * i] ?? 0, points[3 * i + 1] ?? 0);
