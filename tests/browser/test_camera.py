@@ -122,6 +122,21 @@ async def test_pictures_go_to_the_server_where_the_page_cannot_read_them(film):
 
 
 @needs_faces
+async def test_a_page_that_cannot_load_the_networks_sends_pictures(film):
+    flags, _ = film(**HAPPY)
+    async with (
+        live(load_models()) as server,
+        browsing(f"{server.url}/?session=cam&step", *flags, permissions=["camera"]) as page,
+    ):
+        await page.context.route("**/v1/models/**", lambda route: route.abort())
+        state = await switched_on(page, lambda camera: camera["rateHz"] > 0)
+        assert not state["readsHere"]
+        state = await until(page, lambda s: s["affect"] is not None)
+        assert state["affect"]["valence"] > 0
+        assert "Pictures go to the server" in await words(page)
+
+
+@needs_faces
 @pytest.mark.parametrize(("levels", "outcome"), [(HAPPY, "gated"), (UNCOMFORTABLE, "command")])
 async def test_a_gesture_counts_only_with_the_face_to_it(film, levels, outcome):
     flags, _ = film(**levels)

@@ -54,5 +54,7 @@ async def until(page, condition, within_s=20.0):
             await page.evaluate("window.agentPage.step(100)")
             state = await page.evaluate("window.agentPage.state()")
             if condition(state):
+                # The state may be newer than the last picture.
+                await page.evaluate("window.agentPage.step(0)")
                 return state
             await asyncio.sleep(0.05)
