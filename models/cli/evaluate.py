@@ -9,6 +9,8 @@ import typer
 
 from agent_server.domain.gesture import GESTURES
 from agent_server.inference.manifest import MODEL_FILE, AffectManifest, read_manifest
+from models.affect.data import features_of
+from models.affect.views import Pipeline, look_at
 from models.cli.options import (
     ARTIFACTS,
     CACHE,
@@ -30,6 +32,7 @@ from models.data.labelled_faces import is_training_set, read_faces, test_split
 from models.data.splits import synthetic_split
 from models.evaluation.ablations import ablation_report
 from models.evaluation.affect import affect_report, read_affect
+from models.evaluation.affect_baselines import affect_baselines
 from models.evaluation.affect_page import write_affect_page
 from models.evaluation.forecasters import bundled, forecaster
 from models.evaluation.gesture_page import write_gesture_page
@@ -106,6 +109,21 @@ def evaluate_affect(
     if report is not None:
         print(write_affect_page(reading, source, report), file=sys.stderr)
     show(affect_report(reading), as_json)
+
+
+@app.command("affect-baselines")
+def evaluate_affect_baselines(
+    data: DataOption,
+    source: AffectInputOption = "mesh",
+    folds: Annotated[int, typer.Option(help="Of the cross-validation.")] = 5,
+    as_json: JsonOption = False,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Ridge regression, boosted trees and the thesis's network, on the faces that we train on."""
+    torch.set_num_threads(1)
+    faces = read_faces(data)
+    seen = features_of(source, look_at(faces, Pipeline(ARTIFACTS), cache), faces.affect)
+    show(affect_baselines(source, seen, *test_split(faces), folds), as_json)
 
 
 @app.command("landmarks")

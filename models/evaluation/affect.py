@@ -103,7 +103,9 @@ def affect_measures(estimates: Values, labels: Values) -> dict[str, Any]:
         estimates: Shape (N, 4), on [-1, 1].
         labels: Shape (N, 2), on [-1, 1].
     """
-    errors = {name: _errors(estimates[:, axis], labels[:, axis]) for axis, name in enumerate(NAMES)}
+    errors = {
+        name: error_measures(estimates[:, axis], labels[:, axis]) for axis, name in enumerate(NAMES)
+    }
     return {
         **errors,
         "gate": gate_rates(estimates, labels),
@@ -140,7 +142,8 @@ def gate_rates(estimates: Values, labels: Values) -> dict[str, float | int | Non
     }
 
 
-def _errors(estimates: Values, labels: Values) -> Mapping[str, float]:
+def error_measures(estimates: Values, labels: Values) -> Mapping[str, float]:
+    """RMSE, MAE, CCC and Pearson's correlation of one quantity, both of shape (N,)."""
     error = estimates - labels
     varies = estimates.std() > 0 and labels.std() > 0
     return {

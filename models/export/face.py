@@ -31,6 +31,7 @@ from agent_server.inference.manifest import (
 )
 from models.export.tflite.operators import convert_operator
 from models.export.tflite.reader import Graph, read_graph
+from models.export.tflite.rewrite import simplified
 from models.export.tflite.writer import NATURAL, OPSET, GraphWriter
 from models.ops.session import OnnxModel
 
@@ -174,6 +175,7 @@ def landmarker_file(wheels: Path | None) -> bytes:
 
 def convert(graph: Graph, name: str, outputs: tuple[str | None, ...]) -> bytes:
     """A tflite graph with one input as an ONNX file; the same graph gives the same bytes."""
+    graph = simplified(graph)
     writer = GraphWriter(graph)
     (given,) = graph.inputs
     writer.put(given, NATURAL, "given")

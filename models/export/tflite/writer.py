@@ -1,5 +1,6 @@
 """Building an ONNX graph: nodes, weights, and each tensor in the layout that is asked for."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -98,17 +99,30 @@ class GraphWriter:
             self._nodes.append(
                 helper.make_node("Identity", [self.get(index, NATURAL)], [output], name=output)
             )
+        nodes, weights = self._needed(outputs)
         graph = helper.make_graph(
-            self._nodes,
+            nodes,
             name,
             [self._info(given, index) for given, index in inputs.items()],
             [self._info(given, index) for given, index in outputs.items()],
-            self._weights,
+            weights,
         )
         opset = [helper.make_opsetid("", OPSET)]
         model = helper.make_model(graph, opset_imports=opset, ir_version=IR_VERSION)
         onnx.checker.check_model(model, full_check=True)
         return model
+
+    def _needed(
+        self, outputs: Iterable[str]
+    ) -> tuple[list[onnx.NodeProto], list[onnx.TensorProto]]:
+        """The nodes and weights that the outputs depend on."""
+        needed = set(outputs)
+        nodes = []
+        for node in reversed(self._nodes):
+            if needed.intersection(node.output):
+                needed.update(node.input)
+                nodes.append(node)
+        return nodes[::-1], [weight for weight in self._weights if weight.name in needed]
 
     def _info(self, name: str, index: int) -> onnx.ValueInfoProto:
         return helper.make_tensor_value_info(name, TensorProto.FLOAT, self.tensor(index).shape)

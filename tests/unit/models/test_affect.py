@@ -21,6 +21,7 @@ from models.affect.train import cross_validate, estimate, train, train_and_calib
 from models.data.afew_va import read_afew_va  # noqa: E402
 from models.data.labelled_faces import read_faces, test_split  # noqa: E402
 from models.evaluation.affect import affect_measures, concordance, gate_rates  # noqa: E402
+from models.evaluation.affect_baselines import affect_baselines  # noqa: E402
 from tests.support.pictures import DATA, FACES, needs_faces  # noqa: E402
 
 test_split.__test__ = False
@@ -233,3 +234,18 @@ def test_any_folder_of_labelled_pictures_can_be_measured(tmp_path, source):
     page = (tmp_path / "report" / "index.html").read_text()
     assert page.count("<figure>") == 4
     assert DATA not in page
+
+
+def test_simpler_models_are_measured_on_the_same_faces():
+    faces = toy(views=1)
+    source = FaceFeatures(
+        np.tile(faces.features, (1, 1, 2)), faces.found, faces.affect, faces.people,
+        Mirror(np.arange(12), np.ones(12, np.float32)),
+    )  # fmt: skip
+    rows = affect_baselines("mesh", source, list(range(180)), list(range(180, 240)), 3)
+    assert rows.keys() == {"ridge", "boosted_trees", "paper"}
+    for row in rows.values():
+        assert row.keys() == {"cross_validated", "test"}
+    # A sine that nearly is a line: ridge regression must find it.
+    assert rows["ridge"]["test"]["valence"]["ccc"] > 0.85
+    assert rows["ridge"]["cross_validated"]["valence"]["ccc"] > 0.85
