@@ -16,6 +16,7 @@ from agent_server.config import Settings
 from agent_server.protocol.inputs import input_from_message, input_to_message
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.reader import open_recording
+from agent_server.recording.sink import AT_ONCE
 from agent_server.recording.writer import RecordingWriter
 from agent_server.service.core import Core
 from agent_server.service.replay import log_line, replay
@@ -37,7 +38,7 @@ def write_stream(scenario: Scenario, path: Path) -> None:
         licence="Apache-2.0",
         origin=f"synthetic: agent_server.synthetic, seed {scenario.seed}",
     )
-    with RecordingWriter(path, metadata) as writer:
+    with RecordingWriter(path, metadata, AT_ONCE) as writer:
         appends: list[tuple[int, Callable[[], None]]] = [
             (label.onset_ns, partial(writer.append_label, label)) for label in session.labels
         ]

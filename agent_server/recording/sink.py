@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from enum import Enum, auto
 from io import FileIO
 from pathlib import Path
@@ -18,6 +19,24 @@ LIBRARY = "agent-server"
 
 _MESSAGE_OVERHEAD = 31  # opcode, length, channel, sequence and two times
 _NEVER = 1 << 62  # the library's own limit of a chunk: chunks are closed here instead
+
+
+@dataclass(frozen=True, slots=True)
+class ChunkLimits:
+    """A chunk is closed at whichever limit is reached first.
+
+    Attributes:
+        size: Bytes before compression.
+        span_ns: Stamps from its first message to its last.
+    """
+
+    size: int
+    span_ns: int
+
+
+LIVE = ChunkLimits(CHUNK_BYTES, CHUNK_NS)
+AT_ONCE = ChunkLimits(1024 * 1024, MAX_STAMP_NS)
+"""For a file whose records are all there when it is written: large chunks compress better."""
 
 
 class _State(Enum):
@@ -58,19 +77,21 @@ class _WholeWrites:
 class McapSink:
     """Writes messages in zstd chunks with CRCs, then an index and a summary.
 
-    A chunk goes to the file when it holds 32 KiB, or when a message is 500 ms or more away
-    from the chunk's first one; :meth:`flush` closes it early. When writing fails, the file is
-    cut back to its last whole chunk, from which it can be recovered.
+    A chunk goes to the file at its limits: by default when it holds 32 KiB, or when a message is
+    500 ms or more away from the chunk's first one; :meth:`flush` closes it early. When writing
+    fails, the file is cut back to its last whole chunk, from which it can be recovered.
 
     Args:
         path: File to create; it must not exist, so that no recording is lost to another.
+        limits: Of a chunk.
 
     Raises:
         RecordingError: If it cannot be created.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, limits: ChunkLimits = LIVE) -> None:
         self._path = path
+        self._limits = limits
         try:
             self._file = _WholeWrites(FileIO(path, "x"))
         except FileExistsError:
@@ -132,7 +153,7 @@ class McapSink:
         self._mcap.add_message(channel, stamp_ns, data, stamp_ns, sequence)
         self._pending_bytes += _MESSAGE_OVERHEAD + len(data)
         away_ns = abs(stamp_ns - self._chunk_start_ns)
-        if self._pending_bytes >= CHUNK_BYTES or away_ns >= CHUNK_NS:
+        if self._pending_bytes >= self._limits.size or away_ns >= self._limits.span_ns:
             self.flush()
 
     def flush(self) -> None:

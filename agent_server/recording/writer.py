@@ -15,7 +15,7 @@ from agent_server.recording.inputs import to_record
 from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
 from agent_server.recording.records import CompressedImage, CoreEntry, LabelRecord, Time
 from agent_server.recording.schema import json_schema
-from agent_server.recording.sink import McapSink
+from agent_server.recording.sink import LIVE, ChunkLimits, McapSink
 from agent_server.recording.topics import Topic
 
 Output = m.DecisionMessage | m.CommandMessage | m.SceneState
@@ -33,20 +33,22 @@ class RecordingWriter:
 
     Records stand in the file in the order in which they are appended; what enters the core is
     appended when it enters it. Sequence numbers count the records of the file from 0. A chunk
-    closes at 32 KiB or after 500 ms of stamps; the owner calls :meth:`flush` so that it also
-    does when no more records come. Use it as a context manager, or call :meth:`close`.
+    closes at its limits, by default 32 KiB or 500 ms of stamps; the owner calls :meth:`flush` so
+    that it also does when no more records come. Use it as a context manager, or call
+    :meth:`close`.
 
     Args:
         path: File to create; it must not exist.
         metadata: What the recording says about itself.
+        limits: Of a chunk.
 
     Raises:
         RecordingError: If the file cannot be created or, from any method, written. It then
             holds the records up to its last whole chunk, and ``recover`` makes it readable.
     """
 
-    def __init__(self, path: Path, metadata: RecordingMetadata) -> None:
-        self._sink = McapSink(path)
+    def __init__(self, path: Path, metadata: RecordingMetadata, limits: ChunkLimits = LIVE) -> None:
+        self._sink = McapSink(path, limits)
         self._sink.metadata(METADATA_NAME, metadata.to_strings())
         self._encoder = msgspec.json.Encoder()
         self._channels: dict[str, int] = {}

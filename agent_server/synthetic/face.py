@@ -2,7 +2,8 @@
 
 A linear model of real networks' landmarks on generated faces, fitted by
 ``python -m models export face-shapes``: an expression for each valence and arousal, and
-differences between people. Head, place and distance drift; eyes blink; points scatter.
+differences between people. Head, place and distance drift; eyes blink; points scatter as those
+of the real networks do on a still face in a noisy video.
 """
 
 from dataclasses import dataclass
@@ -33,9 +34,14 @@ EYES_PX = (52.0, 78.0)
 """Distance of the eyes in the image: somebody at a desk, half a metre to a metre away."""
 EXPRESSIVENESS = 1.25
 """The mean of many faces is tamer than any of them, so moods are shown by a quarter stronger."""
-JITTER_PX = 0.15
-SHAPE_JITTER = 0.015
+SCATTER = 0.04
+"""From picture to picture, of how people differ: neighbouring points scatter together, by 0.13 px
+where the eyes are 65 px apart."""
+JITTER_PX = 0.04
+"""Of each point by itself."""
+SHAPE_SCATTER = 0.008
 """Of the square roots of blendshapes."""
+SHAPE_DECIMALS = 3
 BLINK_S = 0.15
 _DRIFT_HZ = (0.05, 0.12, 0.21)
 _BLINKS = tuple(ARKIT_BLENDSHAPES.index(f"eyeBlink{side}") for side in ("Left", "Right"))
@@ -119,13 +125,15 @@ class SyntheticFace:
 
     def _blendshapes(self, terms: Float64, shut: float) -> Float32:
         values = terms @ self._shapes.shapes + self._habit
-        values += self._rng.normal(0, SHAPE_JITTER, len(values))
+        values += self._rng.normal(0, SHAPE_SCATTER, len(values))
         values = np.square(np.clip(values, 0, 1))
         values[list(_BLINKS)] += shut
-        return frozen(np.clip(values, 0, 1), (len(values),))
+        return frozen(np.clip(values, 0, 1).round(SHAPE_DECIMALS), (len(values),))
 
     def _mesh(self, terms: Float64, shut: float, time_s: float) -> Float32:
+        scatter = self._rng.normal(0, SCATTER, IDENTITIES)
         points = np.tensordot(terms, self._shapes.expression, axes=1) + self._person
+        points += np.tensordot(scatter, self._shapes.identity, axes=1)
         for lids in _LIDS:
             for upper, lower in lids:
                 points[upper] += shut * 0.9 * (points[lower] - points[upper])

@@ -252,6 +252,7 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=1,
         sensor=KINECT_V2,
         duration_s=26.0,
+        face_as="mesh468",
         parts=(Part("cold", "upper_arms", 4.0), Part("cold", "one_arm", 16.0)),
     ),
     Scenario(
@@ -274,12 +275,12 @@ SCENARIOS: tuple[Scenario, ...] = (
         seed=3,
         sensor=KINECT_V2,
         duration_s=26.0,
-        face_as="mesh468",
+        face_as="dlib68",
         parts=(Part("loud", "palms", 4.0), Part("loud", "clutch", 16.0)),
     ),
     Scenario(
         name="smell",
-        description="Pinches the nose, later covers mouth and nose.",
+        description="Pinches the nose, later covers mouth and nose; a headset reads the face.",
         seed=24,
         sensor=KINECT_V2,
         duration_s=26.0,
@@ -324,7 +325,7 @@ SCENARIOS: tuple[Scenario, ...] = (
     ),
     Scenario(
         name="headset",
-        description="Waves and is cold; a headset hides the face, so no affect is sent.",
+        description="Waves and is cold; a headset hides the face, and nothing is sent of it.",
         seed=8,
         sensor=KINECT_V2,
         duration_s=28.0,

@@ -84,7 +84,7 @@ def export_affect(
             training=Training(
                 command=info["command"],
                 seed=info["seed"],
-                data=[DataSource(SOURCE, LICENCE, synthetic=False)],
+                data=[DataSource(SOURCE, LICENCE, synthetic=True)],
                 wall_s=info["wall_s"],
                 hardware=info["hardware"],
             ),

@@ -1,8 +1,8 @@
 """The generator's face: how the points and blendshapes of faces go with valence and arousal.
 
 A linear model on the faces that the pipeline finds in the training pictures of DiffusionFER
-(CC0): points in front view, as a quadratic of valence and arousal plus the principal components
-of what is left, which is who somebody is. What is made with it is synthetic.
+(CC0): points in front view, as a cubic of valence and arousal plus the principal components of
+what is left, which is who somebody is. What is made with it is synthetic.
 """
 
 from pathlib import Path
@@ -12,12 +12,14 @@ import numpy as np
 
 from agent_server.domain.arrays import Float32, Float64
 from agent_server.face.features import front_view
+from agent_server.face.layouts import LEFT_PUPIL, RIGHT_PUPIL
 from agent_server.synthetic.face import IDENTITIES, mood_terms
 from models.affect.views import MIRRORED, PLAIN, Pipeline, look_at
 from models.data.labelled_faces import LICENCE, SOURCE, read_faces, test_split
 
 RIDGE = 1.0
-RIGHT_IRIS, LEFT_IRIS = 468, 473
+VIEWS = (PLAIN, MIRRORED)
+"""A mirrored picture is as good a face, and makes the model even on both sides."""
 NOTE = f"{SOURCE} ({LICENCE}); points by MediaPipe's face networks (Apache-2.0); training pictures"
 
 
@@ -34,15 +36,14 @@ def export_face_shapes(data: Path, bundles: Path, cache: Path, out: Path) -> int
         Size of the file in bytes.
     """
     faces = read_faces(data)
-    views = look_at(faces, Pipeline(bundles), cache)
+    views = look_at(faces, Pipeline(bundles), cache, len(VIEWS))
     train = np.array(test_split(faces)[0])
-    # A mirrored picture is as good a face, and makes the model even on both sides.
-    pairs = [(index, view) for view in (PLAIN, MIRRORED) for index in train]
+    pairs = [(index, view) for view in VIEWS for index in train]
     pairs = [pair for pair in pairs if views.found[pair]]
     rows, columns = np.array(pairs).T
     terms = mood_terms(faces.affect[rows].astype(np.float64))
     points, _, _ = front_view(views.mesh[rows, columns])
-    apart = np.linalg.norm(points[:, LEFT_IRIS] - points[:, RIGHT_IRIS], axis=-1)
+    apart = np.linalg.norm(points[:, LEFT_PUPIL] - points[:, RIGHT_PUPIL], axis=-1)
     points = points / apart[:, None, None]
     flat = points.reshape(len(points), -1)
     expression = _ridge(terms, flat)

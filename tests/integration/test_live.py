@@ -54,7 +54,7 @@ async def test_a_gesture_becomes_a_command_in_both_codings(subprotocol):
         assert 2.0e9 < command.originating_ns < 3.2e9
         decision = (await next_of(monitor, m.DecisionMessage)).decision
         assert decision.id.startswith("s/")
-        assert set(decision.models) == {"last_frame_predictor", "rule_classifier"}
+        assert set(decision.models) == {"last_frame_predictor", "rule_classifier", "calm_reader"}
         scene = await next_of(monitor, m.SceneState)
         assert scene.mode == "reacting"
 

@@ -1,5 +1,7 @@
 """Models without weights that know one gesture: both hands at the ears."""
 
+import numpy as np
+
 from agent_server.domain.motion import SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
@@ -14,6 +16,17 @@ def covers_ears(motion):
     return "loud" if (wrists > neck).all() else "idle"
 
 
+class CalmReader:
+    """Finds every face calm, whatever it is given as."""
+
+    name = "calm_reader"
+    sha256 = "3" * 64
+
+    def estimate(self, features):
+        return np.tile(np.float32((0.0, 0.0, 0.1, 0.1)), (len(features), 1))
+
+
 def fake_models(fail_on=frozenset()):
     """A predictor that repeats the last frame and a classifier that sees covered ears."""
-    return Models(LastFramePredictor(fail_on), RuleClassifier(covers_ears))
+    affect = {source: CalmReader() for source in ("mesh", "points68", "blendshapes")}
+    return Models(LastFramePredictor(fail_on), RuleClassifier(covers_ears), affect)

@@ -8,11 +8,24 @@ import numpy as np
 import pytest
 
 from agent_server import assets
+from agent_server.config import FaceSettings, Settings
 from agent_server.domain.gesture import GESTURES
 from agent_server.errors import BundleError, InferenceError
 from agent_server.inference.manifest import read_manifest, write_manifest
-from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
-from agent_server.transports.server import CLASSIFIER, PREDICTOR, load_models
+from agent_server.inference.runtime import (
+    OnnxAffect,
+    OnnxClassifier,
+    OnnxFaceNetwork,
+    OnnxPredictor,
+)
+from agent_server.transports.server import (
+    AFFECT_SOURCES,
+    CLASSIFIER,
+    DETECTOR,
+    MESHES,
+    PREDICTOR,
+    load_models,
+)
 from tests.support.bodies import core_joints
 
 
@@ -102,7 +115,10 @@ def test_a_bundle_under_another_name_is_refused(bundles):
 
 
 def test_what_ships_has_the_names_that_the_server_asks_for():
-    assert set(load_models().hashes) == {PREDICTOR, CLASSIFIER}
+    faces = {DETECTOR, MESHES["full"]} | {f"affect_{source}" for source in AFFECT_SOURCES}
+    assert set(load_models().hashes) == {PREDICTOR, CLASSIFIER} | faces
+    fast = load_models(Settings(face=FaceSettings(mesh="fast"))).hashes
+    assert MESHES["fast"] in fast and MESHES["full"] not in fast
 
 
 def test_a_model_that_is_none_is_refused(bundles):
@@ -143,8 +159,20 @@ def test_a_manifest_that_does_not_fit_is_refused(bundles):
         OnnxPredictor(folder)
     table = json.loads((folder / "manifest.json").read_text())
     (folder / "manifest.json").write_text(json.dumps({**table, "task": "juggle"}))
+    with pytest.raises(BundleError, match="can juggle"):
+        OnnxPredictor(folder)
+    (folder / "manifest.json").write_text(json.dumps({**table, "rate_hz": "fast"}))
     with pytest.raises(BundleError, match="not a valid manifest"):
         OnnxPredictor(folder)
+
+
+def test_a_bundle_of_another_kind_is_refused(bundles):
+    with pytest.raises(BundleError, match="can face"):
+        OnnxPredictor(bundles / DETECTOR)
+    with pytest.raises(BundleError, match="for detector"):
+        OnnxFaceNetwork(bundles / DETECTOR, "mesh")
+    with pytest.raises(BundleError, match="reads affect from points68"):
+        OnnxAffect(bundles / "affect_points68", "mesh")
 
 
 def test_input_that_makes_no_sense_fails_as_inference():

@@ -27,7 +27,7 @@ from agent_server.recording.records import (
     Tick,
     WindowDone,
 )
-from agent_server.recording.sink import CHUNK_BYTES, CHUNK_NS
+from agent_server.recording.sink import AT_ONCE, CHUNK_BYTES, CHUNK_NS, LIVE
 from agent_server.recording.writer import RecordingWriter
 from tests.support.faces import FACES
 
@@ -179,6 +179,20 @@ def test_a_chunk_closes_at_32_kib(tmp_path: Path) -> None:
     sizes = [chunk.uncompressed_size for chunk in chunks(path)]
     assert len(sizes) > 2
     assert all(CHUNK_BYTES <= size < CHUNK_BYTES + 2048 for size in sizes[:-1])
+
+
+def test_a_file_that_is_written_at_once_has_large_chunks(tmp_path: Path) -> None:
+    live, at_once = tmp_path / "live.mcap", tmp_path / "at_once.mcap"
+    stamps = [index * 40 * NS_PER_MS for index in range(5000)]
+    for path, limits in ((live, LIVE), (at_once, AT_ONCE)):
+        with RecordingWriter(path, METADATA, limits) as writer:
+            for stamp in stamps:
+                writer.append_input(frame_at(stamp))
+    sizes = [chunk.uncompressed_size for chunk in chunks(at_once)]
+    assert len(sizes) > 1
+    assert all(AT_ONCE.size <= size < AT_ONCE.size + 2048 for size in sizes[:-1])
+    assert at_once.stat().st_size < 0.9 * live.stat().st_size
+    assert [event.originating_ns for event in open_recording(at_once).events()] == stamps
 
 
 def test_the_file_says_nothing_that_changes_between_machines(write: Callable[[str], Path]) -> None:

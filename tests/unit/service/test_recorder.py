@@ -27,7 +27,7 @@ def test_what_was_appended_is_in_the_file_in_its_order(tmp_path):
     made.close()
     recording = open_recording(tmp_path / "lab-1970-01-01T000005000.mcap")
     assert recording.metadata.session == "lab"
-    assert set(recording.metadata.bundles) == {"last_frame_predictor", "rule_classifier"}
+    assert set(recording.metadata.bundles) == set(fake_models().hashes)
     kinds = [record.topic for record in recording]
     assert kinds == ["/skeleton", "/affect"] * len(frames) + ["/core"]
 
@@ -47,7 +47,7 @@ def test_a_disk_that_is_too_slow_is_given_up_and_what_was_written_stays(
     may_write = threading.Event()
 
     class SlowWriter(RecordingWriter):
-        def append_skeleton(self, frame):
+        def append_input(self, frame):
             may_write.wait(5)
             super().append_input(frame)
 
