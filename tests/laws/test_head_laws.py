@@ -113,6 +113,17 @@ def test_the_pose_bears_jitter(pose: HeadPose, layout: FaceLayout, seed: int) ->
 
 
 @law
+@given(LAYOUTS, st.integers(0, 2**32 - 1), st.floats(0, 1))
+def test_whatever_points_are_a_head_it_is_in_front_of_the_camera(
+    layout: FaceLayout, seed: int, height: float
+) -> None:
+    points = np.random.default_rng(seed).uniform(0, 640, (layout.points, layout.axes))
+    points[:, 1] *= height
+    found = head_pose(FaceLandmarks(0, layout, points.astype(np.float32), WIDTH, HEIGHT))
+    assert found is None or found.translation[2] > 0
+
+
+@law
 @given(poses)
 def test_a_rotation_turns_nothing_inside_out(pose: HeadPose) -> None:
     assert np.allclose(pose.rotation @ pose.rotation.T, np.eye(3), atol=1e-9)

@@ -7,7 +7,7 @@ from agent_server.domain.affect import AffectSample
 from agent_server.domain.face import ARKIT_BLENDSHAPES
 from agent_server.face.blendshapes import FaceBlendshaper
 from agent_server.face.tracker import FaceTracker
-from agent_server.synthetic.face import SyntheticFace
+from agent_server.synthetic.face import SyntheticFace, face_shapes
 from tests.support.pictures import labelled, needs_faces, picture
 
 INDEX = {name: index for index, name in enumerate(ARKIT_BLENDSHAPES)}
@@ -50,6 +50,21 @@ def test_the_network_gets_x_and_y_of_its_points_in_order():
     assert (np.diff(chosen) > 0).all(), "ascending, so none twice"
     assert set(range(468, 478)) <= set(chosen.astype(int)), "with both irises"
     assert np.array_equal(network.given[0, :, 1], network.given[0, :, 0] + 1)
+
+
+def test_the_networks_points_are_those_of_both_halves_of_the_face():
+    network = Ramp()
+    points = np.zeros((478, 3), dtype=np.float32)
+    points[:, 0] = np.arange(478)
+    FaceBlendshaper(network).read(points)
+    chosen = network.given[0, :, 0].astype(int)
+    neutral = face_shapes().expression[0]
+    distances = np.linalg.norm(neutral[:, None] * (-1, 1, 1) - neutral[None], axis=2)
+    mirrored = distances.argmin(axis=1)
+    assert set(mirrored[chosen]) <= set(chosen)
+    # On the line between them: lips, chin, nose and forehead.
+    middle = {int(point) for point in chosen if mirrored[point] == point}
+    assert middle >= {0, 1, 4, 5, 6, 8, 10, 13, 14, 17, 152, 168, 195, 197}
 
 
 def test_place_and_size_of_a_face_change_nothing(shapes):

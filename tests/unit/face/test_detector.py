@@ -142,6 +142,18 @@ def test_overlapping_boxes_are_averaged_by_their_scores():
     assert found.score == pytest.approx(weights[0])
 
 
+@pytest.mark.parametrize(
+    ("other", "faces"),
+    [
+        (4, 1),  # two cells to the right: a third of both boxes is shared
+        (36, 2),  # and one down: less than a quarter
+    ],
+)
+def test_boxes_are_one_face_where_three_tenths_are_shared(other, faces):
+    found = FaceDetector(Anchors(0, other)).detect(np.zeros((128, 128, 3), np.uint8))
+    assert len(found) == faces
+
+
 def test_boxes_apart_stay_apart():
     found = FaceDetector(Anchors(0, 511)).detect(np.zeros((128, 128, 3), np.uint8))
     assert sorted(float(middle(each)[0]) for each in found) == pytest.approx([4, 124])

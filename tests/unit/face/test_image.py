@@ -49,6 +49,17 @@ def test_a_grey_image_has_three_equal_channels():
     assert (decoded == decoded[..., :1]).all()
 
 
+def test_tables_may_stand_before_the_size():
+    plain = encoded(ramp(64, 48))
+    at, header = segments(plain)
+    after = plain[at + len(header) :]
+    assert after[:2] == b"\xff\xc4", "the tables of Huffman codes"
+    end = after.index(b"\xff\xda")
+    moved = plain[:at] + after[:end] + header + after[end:]
+    assert jpeg_size(moved) == (64, 48)
+    assert np.array_equal(decode_jpeg(moved), decode_jpeg(plain))
+
+
 def test_a_note_on_orientation_is_not_followed():
     plain = encoded(ramp(64, 48))
     # Exif of one entry: orientation 6, a quarter turn.

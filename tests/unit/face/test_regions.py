@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from agent_server.face.regions import Region
+from agent_server.face.regions import Region, region_of_points
 
 YELLOW = (255, 200, 0)
 
@@ -47,3 +47,14 @@ def test_beyond_the_image_its_edge_goes_on():
     crop = Region(640, 240, 100, 0.0).crop(image, 100)
     assert (crop[:, 52:] == YELLOW).all()
     assert (crop[:, :48] == 0).all()
+
+
+def test_the_region_of_a_mesh_is_half_as_large_again_and_lies_along_its_eyes():
+    points = np.random.default_rng(0).uniform(100, 200, (478, 3)).astype(np.float32)
+    points[33, :2], points[263, :2] = (120, 150), (180, 180)
+    points[7, :2], points[9, :2] = (80, 140), (150, 210)
+    region = region_of_points(points)
+    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+    assert (region.x, region.y) == pytest.approx(tuple((low + high) / 2))
+    assert region.size == pytest.approx(1.5 * max(high - low))
+    assert region.angle == pytest.approx(np.arctan2(30, 60))

@@ -13,7 +13,7 @@ from agent_server.inference.manifest import (
     MODEL_FILE,
     read_manifest,
 )
-from agent_server.inference.runtime import OnnxModel as ServerModel
+from agent_server.inference.runtime import OnnxPredictor
 from models.evaluation.forecasters import BENCHMARKS
 from models.ops.session import OnnxModel
 
@@ -44,4 +44,4 @@ def test_each_is_whole_gives_its_golden_output_and_says_what_it_is_for(folder: P
 @pytest.mark.parametrize("name", ["best_h36m", "simlpe_h36m"])
 def test_the_server_refuses_a_research_model(name: str) -> None:
     with pytest.raises(BundleError, match="research model of h36m22"):
-        ServerModel(ROOT / BENCHMARKS / name, "predict")
+        OnnxPredictor(ROOT / BENCHMARKS / name)

@@ -59,9 +59,10 @@ def test_settings_name_bundles_relative_to_where_the_server_starts(tmp_path, mon
     monkeypatch.chdir(tmp_path)
     models = load_models(load_settings(Path("settings/s.toml")))
     assert models.classifier.labels == tuple(taught)
-    assert set(models.hashes) == {"mine", PREDICTOR}
+    assert (models.predictor.name, models.classifier.name) == (PREDICTOR, "mine")
     options = settings_with(Path("settings/s.toml"), predictor=Path("forecast"))
-    assert set(load_models(options).hashes) == {"mine", "forecast"}
+    chosen = load_models(options)
+    assert (chosen.predictor.name, chosen.classifier.name) == ("forecast", "mine")
 
 
 def test_the_command_line_goes_before_the_file(tmp_path):
