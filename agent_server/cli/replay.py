@@ -127,13 +127,13 @@ async def _send(recording: Recording, url: str, speed: float, show: Story.Teller
         listener.cancel()
 
 
-def _face(recording: Recording) -> m.Face:
+def _face(recording: Recording) -> m.FaceKind:
     """What the recorded sensor said of the face; a live recording has it in its log."""
     if recording.metadata.face is None:
         for record in recording.records((CORE.name,)):
             if isinstance(record.message, SensorChanged):
                 return record.message.face
-    face: m.Face = msgspec.convert(recording.metadata.face or "expected", m.Face)
+    face: m.FaceKind = msgspec.convert(recording.metadata.face or "expected", m.FaceKind)
     return face
 
 

@@ -17,6 +17,7 @@ from agent_server.protocol.messages import (
     Image,
     Message,
     PackedClientMessage,
+    PackedServerMessage,
     ServerMessage,
 )
 
@@ -89,7 +90,7 @@ class MsgpackCodec:
     def __init__(self) -> None:
         self._encoder = msgspec.msgpack.Encoder()
         self._client = msgspec.msgpack.Decoder(PackedClientMessage)
-        self._server = msgspec.msgpack.Decoder(ServerMessage)
+        self._server = msgspec.msgpack.Decoder(PackedServerMessage)
 
     def encode(self, message: Message) -> bytes:
         """One message as MessagePack."""

@@ -451,6 +451,6 @@ class Session:
     def _update_face(self, *, is_open: bool) -> None:
         """A face is expected unless every sensor that is there has none, or the gaze instead."""
         said = {sensor.hello.face for sensor in self.audience.having("sensor")} or {"expected"}
-        face: m.Face = "expected" if "expected" in said else "gaze" if "gaze" in said else "none"
+        face: m.FaceKind = "expected" if "expected" in said else "gaze" if "gaze" in said else "none"
         self._core.set_face(face)
         self._journal.append_core(SensorChanged(self._now(), is_open, face))
