@@ -1,0 +1,1 @@
+"""What is generated from the messages: schema, documents, and the clients' types."""
