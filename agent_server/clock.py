@@ -17,6 +17,14 @@ class Clock(Protocol):
         ...
 
 
+    def wall_ns(self) -> int:
+        """Wall-clock time in nanoseconds since 1970; it may be set, and jump.
+
+        It only tells how long a server was away.
+        """
+        ...
+
+
 class SystemClock:
     """The machine's monotonic clock."""
 
@@ -27,6 +35,10 @@ class SystemClock:
     def wall(self) -> str:
         """Now, in UTC."""
         return datetime.now(UTC).isoformat(timespec="milliseconds")
+
+    def wall_ns(self) -> int:
+        """Now, since 1970."""
+        return time.time_ns()
 
 
 class ManualClock:
@@ -46,6 +58,10 @@ class ManualClock:
     def wall(self) -> str:
         """Where it stands, counted from 1970."""
         return datetime.fromtimestamp(self._now_ns / 1e9, UTC).isoformat(timespec="milliseconds")
+
+    def wall_ns(self) -> int:
+        """Where it stands."""
+        return self._now_ns
 
     def advance(self, by_ns: int) -> None:
         """Move forward by ``by_ns`` nanoseconds.

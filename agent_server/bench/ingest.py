@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from agent_server.bench.stream import recorded_frames
 from agent_server.config import Settings
+from agent_server.domain.stamp import to_ns
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS
 from agent_server.protocol.connection import Received, ServerConnection
@@ -57,11 +58,13 @@ def _round_us(subprotocol: str, wire: list[str | bytes]) -> float:
     settings = Settings()
     codec = CODECS[subprotocol]
     connection = ServerConnection(
+        "bench",
         "sensor",
         codec,
         max_message_bytes=settings.server.max_message_bytes,
         max_image_bytes=settings.server.max_image_bytes,
         max_errors=1,
+        heartbeat_ns=to_ns(settings.server.heartbeat_s),
     )
     connection.receive(codec.encode(m.Hello(m.PROTOCOL, "bench")), 0)
     perception = Perception(settings.window, settings.subject)

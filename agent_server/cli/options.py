@@ -37,6 +37,7 @@ def settings_with(
     *,
     host: str | None = None,
     port: int | None = None,
+    state: Path | None = None,
     predictor: Path | None = None,
     classifier: Path | None = None,
     rules: Path | None = None,
@@ -50,7 +51,7 @@ def settings_with(
     try:
         return msgspec.structs.replace(
             settings,
-            server=_changed(settings.server, host=host, port=port),
+            server=_changed(settings.server, host=host, port=port, state=state),
             models=_changed(settings.models, predictor=predictor, classifier=classifier),
             rules=settings.rules if rules is None else str(rules),
         )

@@ -34,11 +34,21 @@ def serve(
         Path | None,
         typer.Option(metavar="DIR", help="Record every session into a file of this folder."),
     ] = None,
+    state: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Remember sessions over a restart in this folder."),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Take sensors, renderers and monitors until stopped."""
     settings = settings_with(
-        config, host=host, port=port, predictor=predictor, classifier=classifier, rules=rules
+        config,
+        host=host,
+        port=port,
+        state=state,
+        predictor=predictor,
+        classifier=classifier,
+        rules=rules,
     )
     hub = build_hub(settings, load_models(settings), record)
     run(_serve(hub, bind(settings), as_json=as_json), interrupted_status=0)

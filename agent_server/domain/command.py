@@ -64,6 +64,39 @@ class AckStatus(StrEnum):
     FAILED = "failed"
 
 
+class CommandEnd(StrEnum):
+    """How a command ended.
+
+    Attributes:
+        DONE: The renderer has carried it out.
+        FAILED: The renderer could not.
+        EXPIRED: The renderer did not start it while it was worth starting.
+        PREEMPTED: A newer one cut it short.
+        TIMED_OUT: The renderer started it and then said nothing for too long.
+        ASSUMED: Nobody carries commands out, and its nominal time has passed.
+    """
+
+    DONE = "done"
+    FAILED = "failed"
+    EXPIRED = "expired"
+    PREEMPTED = "preempted"
+    TIMED_OUT = "timed_out"
+    ASSUMED = "assumed"
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """A command that is over.
+
+    Attributes:
+        command_id: Which one.
+        end: How it ended.
+    """
+
+    command_id: str
+    end: CommandEnd
+
+
 @dataclass(frozen=True, slots=True)
 class Ack:
     """A renderer's word on a command.

@@ -9,17 +9,19 @@ from enum import Enum, auto
 
 from agent_server.errors import InvalidInput
 from agent_server.protocol import messages as m
+from agent_server.protocol.clock_estimate import ClockEstimate
 from agent_server.protocol.codec import Codec, Wire
+from agent_server.protocol.codes import (
+    CLOSE_BAD_HELLO,
+    CLOSE_SILENT,
+    CLOSE_TOO_MANY_ERRORS,
+    CLOSE_WRONG_VERSION,
+)
 
-CLOSE_NORMAL = 1000
-CLOSE_GOING_AWAY = 1001
-CLOSE_BAD_HELLO = 4400
-CLOSE_WRONG_VERSION = 4401
-CLOSE_HELLO_TIMEOUT = 4408
-CLOSE_REPLACED = 4409
-CLOSE_TOO_SLOW = 4413
-CLOSE_TOO_MANY_ERRORS = 4422
-CLOSE_FULL = 4429
+HEARTBEAT = "heartbeat"
+"""Capability of clients that answer pings."""
+SILENT_HEARTBEATS = 2.5
+"""A client that does, and was not heard for so many heartbeats, is gone."""
 
 FORGIVENESS = 0.1
 """How much of an error a good message pays back: below one bad message in ten nobody is cut."""
@@ -78,6 +80,13 @@ class Reply:
 
 
 @dataclass(frozen=True, slots=True)
+class ClockJumped:
+    """The client's clock, or this one, has jumped by so many nanoseconds."""
+
+    by_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class Refused:
     """Send this error; close the connection when a close code is given."""
 
@@ -85,29 +94,35 @@ class Refused:
     close_code: int | None = None
 
 
-Event = Greeted | Received | Reply | Refused | None
+Event = Greeted | Received | Reply | ClockJumped | Refused | None
 
 
 class ServerConnection:
     """One connection's protocol state.
 
     Args:
+        session: Session of the client's address.
         role: What the client came as.
         codec: The coding that was agreed.
         max_message_bytes: Longer messages are refused ...
         max_image_bytes: ... but for images, which may have this many.
         max_errors: Errors that may be open before the connection is closed.
+        heartbeat_ns: Time from one ping to the next.
     """
 
     def __init__(
         self,
+        session: str,
         role: m.Role,
         codec: Codec,
         *,
         max_message_bytes: int,
         max_image_bytes: int,
         max_errors: int,
+        heartbeat_ns: int,
     ) -> None:
+        self.clock = ClockEstimate()
+        self.session = session
         self.role = role
         self.codec = codec
         self.state = State.OPENING
@@ -117,17 +132,21 @@ class ServerConnection:
         self._max_errors = max_errors
         self._errors = 0.0
         self._allowed = _ALLOWED[role]
+        self._heartbeat_ns = heartbeat_ns
+        self._heard_ns = 0
+        self._answers_pings = False
 
     def receive(self, data: Wire, now_ns: int) -> Event:
         """Take one websocket message.
 
         Args:
             data: Text or bytes as received.
-            now_ns: The server's monotonic clock, for answering a ping.
+            now_ns: The server's monotonic clock.
 
         Returns:
             What it means, or None for a message that asks for nothing.
         """
+        self._heard_ns = now_ns
         size = len(data) if isinstance(data, bytes) or data.isascii() else len(data.encode())
         try:
             # Only binary messages can be images; which of them are, decoding tells.
@@ -159,6 +178,15 @@ class ServerConnection:
             close_code,
         )
 
+    def beat(self, now_ns: int) -> Reply | Refused:
+        """A heartbeat has passed: ping the client, or give it up if it ought to have answered."""
+        silent_ns = now_ns - self._heard_ns
+        if not self._answers_pings or silent_ns <= SILENT_HEARTBEATS * self._heartbeat_ns:
+            return Reply(m.Ping(now_ns))
+        self.close()
+        sentence = f"nothing was heard for {silent_ns / 1e9:.1f} s, though pings were sent"
+        return Refused(m.ErrorMessage("silent", sentence, fatal=True), CLOSE_SILENT)
+
     def close(self) -> None:
         """Note that the connection is over."""
         if self.state is not State.CLOSED:
@@ -178,8 +206,9 @@ class ServerConnection:
         match message:
             case m.Ping(sent_ns=sent_ns):
                 return Reply(m.Pong(sent_ns, now_ns))
-            case m.Pong():
-                return None
+            case m.Pong(sent_ns=sent_ns, time_ns=time_ns):
+                jump_ns = self.clock.push(sent_ns, time_ns, now_ns)
+                return None if jump_ns is None else ClockJumped(jump_ns)
             case _ if isinstance(message, self._allowed):
                 return Received(message)
         tag = message.__struct_config__.tag
@@ -205,6 +234,18 @@ class ServerConnection:
                 field="protocol",
                 code="wrong_version",
             )
+        for name, meant, found in (
+            ("session", message.session, self.session),
+            ("role", message.role, self.role),
+        ):
+            if meant not in (None, found):
+                raise InvalidInput(
+                    f"hello says {name} {meant!r}, the address says {found!r}: let both say the "
+                    "same, or leave it out of hello",
+                    field=name,
+                    code="wrong_address",
+                )
+        self._answers_pings = HEARTBEAT in message.capabilities
         self._enter(State.OPEN)
         return Greeted(message)
 

@@ -151,8 +151,14 @@ def command_body(command: Command) -> m.CommandBody:
     )
 
 
-def command_message(command: Command, epoch: str) -> m.CommandMessage:
-    """A command as a renderer gets it."""
+def command_message(command: Command, epoch: str, server_ns: int) -> m.CommandMessage:
+    """A command as a renderer gets it.
+
+    Args:
+        command: The command.
+        epoch: Epoch in which it is sent.
+        server_ns: The server's monotonic clock when it was decided.
+    """
     return m.CommandMessage(
         id=command.id,
         sequence=command.sequence,
@@ -165,6 +171,7 @@ def command_message(command: Command, epoch: str) -> m.CommandMessage:
         issued_ns=command.issued_ns,
         ttl_ms=command.ttl_ms,
         preempts=command.preempts,
+        server_ns=server_ns,
     )
 
 

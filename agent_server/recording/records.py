@@ -6,6 +6,7 @@ import msgspec
 from msgspec import Meta
 
 from agent_server.domain.label import Label
+from agent_server.domain.scene import RoomState
 from agent_server.protocol.messages import Message, Nanoseconds
 
 Index = Annotated[int, Meta(ge=0)]
@@ -95,4 +96,12 @@ class BodyGone(CoreRecord, frozen=True, tag="body_lost"):
     body_id: Index
 
 
-CoreEntry = WindowDone | WindowSkipped | Tick | RendererChanged | SensorChanged | BodyGone
+class Restored(CoreRecord, frozen=True, tag="restored"):
+    """The session goes on after a restart of the server, with the room as it was."""
+
+    room: RoomState
+
+
+CoreEntry = (
+    WindowDone | WindowSkipped | Tick | RendererChanged | SensorChanged | BodyGone | Restored
+)

@@ -5,14 +5,21 @@ happens at its own deadline, however late the machine hears of it. So the same e
 same commands, no matter how often :meth:`Room.advance` is called.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from agent_server.domain.command import Ack, AckStatus, Command
+from agent_server.domain.command import Ack, AckStatus, Command, CommandEnd, Ending
 from agent_server.domain.decision import Outcome, SceneVerdict
 from agent_server.domain.motion import BodyLost
-from agent_server.domain.scene import AgentMode, ObjectChanged, SceneSnapshot
-from agent_server.domain.stamp import to_ns
+from agent_server.domain.scene import (
+    AgentMode,
+    Authority,
+    Difference,
+    ObjectChanged,
+    RoomState,
+    SceneSnapshot,
+)
+from agent_server.domain.stamp import NS_PER_MS, to_ns
 from agent_server.errors import InvalidInput
 from agent_server.scene.rulebook import RESUME_WORK, Reaction, Rule, Rules
 from agent_server.scene.suggest import suggest
@@ -63,14 +70,24 @@ class _Running:
     Attributes:
         command: As it was sent.
         reaction: What it carries out.
-        duration_ns: Nominal time that it takes.
         heard_ns: When a renderer last gave a sign of life, or could first have done so.
+        is_started: Whether it has begun: a renderer said so, or there was none to say it.
     """
 
     command: Command
     reaction: Reaction
-    duration_ns: int
     heard_ns: int
+    is_started: bool
+
+    @property
+    def duration_ns(self) -> int:
+        """Nominal time that it takes."""
+        return to_ns(self.command.duration_s)
+
+    @property
+    def expires_ns(self) -> int:
+        """When it is not worth starting any more."""
+        return self.command.issued_ns + self.command.ttl_ms * NS_PER_MS
 
 
 class Room:
@@ -102,16 +119,68 @@ class Room:
         self._lost_ns: int | None = None  # when the body left, unless a gesture came since
         self._has_renderer = False
         self._detached_ns = 0  # when a renderer last left
+        self._endings: list[Ending] = []
 
     def snapshot(self) -> SceneSnapshot:
         """The room at the time of the newest event. Objects without states are left out."""
         command_id = self._running.command.id if self._running else None
         return SceneSnapshot(self._mode, dict(self._objects), command_id)
 
+    def take_endings(self) -> tuple[Ending, ...]:
+        """The commands that have ended since this was last asked, in order."""
+        endings = tuple(self._endings)
+        self._endings.clear()
+        return endings
+
+    def state(self) -> RoomState:
+        """All that is to be remembered over a restart."""
+        running = self._running
+        return RoomState(
+            mode=self._mode,
+            objects=dict(self._objects),
+            sequence=self._sequence,
+            now_ns=self._now_ns,
+            gesture_ns=self._gesture_ns,
+            attending_ns=self._attending_ns,
+            lost_ns=self._lost_ns,
+            has_renderer=self._has_renderer,
+            command=None if running is None else running.command,
+            is_started=running is not None and running.is_started,
+            heard_ns=0 if running is None else running.heard_ns,
+        )
+
+    def restore(self, state: RoomState) -> None:
+        """Go on where a room has stopped.
+
+        What the rules no longer know is left out: objects and states keep their initial state, and a
+        command whose reaction is gone has failed.
+        """
+        for name, value in state.objects.items():
+            if name in self._objects and value in self._rules.objects[name].states:
+                self._objects[name] = value
+        self._mode = state.mode
+        self._sequence = state.sequence
+        self._now_ns = state.now_ns
+        self._gesture_ns = state.gesture_ns
+        self._attending_ns = state.attending_ns
+        self._lost_ns = state.lost_ns
+        self._has_renderer = state.has_renderer
+        command = state.command
+        if command is None:
+            return
+        reaction = self._rules.reactions.get(command.reaction)
+        if reaction is not None:
+            self._running = _Running(command, reaction, state.heard_ns, state.is_started)
+        else:
+            self._endings.append(Ending(command.id, CommandEnd.FAILED))
+            self._mode = AgentMode.ATTENTION
+
     def deadline(self) -> int | None:
         """When something happens next if no event comes before; None if nothing will."""
         running = self._running
         if running is not None:
+            if self._has_renderer and not running.is_started:
+                return running.expires_ns
             if self._has_renderer:
                 return running.heard_ns + PATIENCE * running.duration_ns
             return max(running.command.issued_ns + running.duration_ns, self._detached_ns)
@@ -125,9 +194,9 @@ class Room:
         """Let time pass up to ``now_ns`` and give the commands that fell due, in order."""
         commands = []
         while (due_ns := self.deadline()) is not None and due_ns <= now_ns:
-            self._now_ns = due_ns
+            self._now_ns = max(self._now_ns, due_ns)
             if self._running is not None:
-                self._finish(self._running, done=not self._has_renderer)
+                self._finish(self._running, self._end_of(self._running))
             else:
                 cause = ATTENTION_TIMEOUT if self._lost_ns is None else BODY_LOST
                 # No frame leads to the end of attention: it originates in that very moment.
@@ -178,10 +247,13 @@ class Room:
         running = self._running
         if running is None or running.command.id != ack.command_id:
             return Acknowledgement(False, due)
-        if ack.status in (AckStatus.DONE, AckStatus.FAILED):
-            self._finish(running, done=ack.status is AckStatus.DONE)
+        if ack.status is AckStatus.DONE:
+            self._finish(running, CommandEnd.DONE)
+        elif ack.status is AckStatus.FAILED:
+            self._finish(running, CommandEnd.FAILED)
         else:
             running.heard_ns = self._now_ns
+            running.is_started |= ack.status is not AckStatus.ACCEPTED
         return Acknowledgement(True, (*due, *self.advance(self._now_ns)))
 
     def change(self, changed: ObjectChanged) -> tuple[Command, ...]:
@@ -207,6 +279,25 @@ class Room:
         self._objects[changed.object] = changed.state
         return due
 
+    def compare(self, shown: Mapping[str, str]) -> tuple[Difference, ...]:
+        """Where what a renderer shows is not what the room holds; changes nothing.
+
+        The effect of the command that is being carried out is no difference: the renderer may be done
+        with it and not have said so yet.
+        """
+        effects = self._running.reaction.effects if self._running is not None else ()
+        ahead = {effect.object: effect.state for effect in effects}
+        differences = []
+        for name, state in shown.items():
+            held = self._objects.get(name, "")
+            if state in (held, ahead.get(name)):
+                continue
+            thing = self._rules.objects.get(name)
+            is_known = thing is not None and state in thing.states
+            kept = thing.authority if thing is not None and is_known else Authority.SERVER
+            differences.append(Difference(name, state, held, kept))
+        return tuple(differences)
+
     def lose_body(self, lost: BodyLost) -> tuple[Command, ...]:
         """The person has left: attention ends, at once or when the running reaction is over."""
         due = self.advance(lost.stamp_ns)
@@ -226,6 +317,8 @@ class Room:
         due = self.advance(now_ns)
         self._has_renderer = False
         self._detached_ns = self._now_ns
+        if self._running is not None:
+            self._running.is_started = True
         return (*due, *self.advance(self._now_ns))
 
     def _unmet(self, rule: Rule) -> Iterator[str]:
@@ -257,16 +350,25 @@ class Room:
             issued_ns=self._now_ns,
             ttl_ms=reaction.ttl_ms,
         )
-        self._running = _Running(command, reaction, to_ns(command.duration_s), self._now_ns)
+        if self._running is not None:
+            self._endings.append(Ending(self._running.command.id, CommandEnd.PREEMPTED))
+        self._running = _Running(command, reaction, self._now_ns, not self._has_renderer)
         is_return = reaction.name == RESUME_WORK
         self._mode = AgentMode.WORKING if is_return else AgentMode.REACTING
         return command
 
-    def _finish(self, running: _Running, *, done: bool) -> None:
+    def _end_of(self, running: _Running) -> CommandEnd:
+        """How a command ends of which nobody says anything in time."""
+        if not self._has_renderer:
+            return CommandEnd.ASSUMED
+        return CommandEnd.TIMED_OUT if running.is_started else CommandEnd.EXPIRED
+
+    def _finish(self, running: _Running, end: CommandEnd) -> None:
         """End the running command; a reaction ends in attention."""
-        if done:
+        if end in (CommandEnd.DONE, CommandEnd.ASSUMED):
             for effect in running.reaction.effects:
                 self._objects[effect.object] = effect.state
+        self._endings.append(Ending(running.command.id, end))
         self._running = None
         if self._mode is AgentMode.REACTING:
             self._mode = AgentMode.ATTENTION

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from agent_server.domain.command import Step
-from agent_server.domain.scene import AgentMode
+from agent_server.domain.scene import AgentMode, Authority
 
 RESUME_WORK = "resume_work"
 """The reaction that every rule file must have: it is sent when attention ends."""
@@ -18,11 +18,13 @@ class SceneObject:
         name: For example ``window``.
         states: States that it may be in; empty for a thing that never changes.
         initial: State at the start of a session, or None for a thing that never changes.
+        authority: Whose word holds when a renderer comes that shows another state.
     """
 
     name: str
     states: tuple[str, ...]
     initial: str | None
+    authority: Authority = Authority.SERVER
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from agent_server.domain.command import Step
 from agent_server.domain.gesture import GESTURES, IDLE
-from agent_server.domain.scene import AgentMode
+from agent_server.domain.scene import AgentMode, Authority
 from agent_server.domain.stamp import NS_PER_MS, to_ns
 from agent_server.errors import RuleError
 from agent_server.scene.rulebook import (
@@ -74,8 +74,11 @@ def parse_rules(text: str, known_gestures: Collection[str] = GESTURES, *, name: 
     """
     root = Source(name, text).parse()
     root.only("settings", "objects", "steps", "reactions", "rules", "idle")
-    settings = root.table("settings").only("attention_s", "ungated")
-    objects = {key: _object(key, table) for key, table in root.named_tables("objects").items()}
+    settings = root.table("settings").only("attention_s", "ungated", "authority")
+    authority = _authority(settings, Authority.SERVER)
+    objects = {
+        key: _object(key, table, authority) for key, table in root.named_tables("objects").items()
+    }
     kinds = {key: _step_kind(key, table) for key, table in root.named_tables("steps").items()}
     room = _Room(objects, kinds)
     reactions = {
@@ -97,8 +100,15 @@ def parse_rules(text: str, known_gestures: Collection[str] = GESTURES, *, name: 
     )
 
 
-def _object(name: str, table: Table) -> SceneObject:
-    table.only("states", "initial")
+def _authority(table: Table, default: Authority) -> Authority:
+    """Whose word holds, where the table says so."""
+    if "authority" not in table:
+        return default
+    return Authority(_known(table, "authority", "side", list(Authority)))
+
+
+def _object(name: str, table: Table, authority: Authority) -> SceneObject:
+    table.only("states", "initial", "authority")
     states = table.texts("states")
     for index, state in enumerate(states):
         if state in states[:index]:
@@ -115,7 +125,8 @@ def _object(name: str, table: Table) -> SceneObject:
             f"an object that changes has two states or more, got {len(states)}",
             "add the others, or leave out states and initial",
         )
-    return SceneObject(name, tuple(states), _known(table, "initial", "state", states))
+    initial = _known(table, "initial", "state", states)
+    return SceneObject(name, tuple(states), initial, _authority(table, authority))
 
 
 def _step_kind(name: str, table: Table) -> StepKind:

@@ -1,10 +1,12 @@
 """Who listens to a session, and what each of them gets."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from agent_server.domain.stamp import NS_PER_MS
 from agent_server.protocol import messages as m
-from agent_server.protocol.connection import CLOSE_TOO_SLOW
+from agent_server.protocol.clock_estimate import ClockEstimate
+from agent_server.protocol.codes import CLOSE_TOO_SLOW
 from agent_server.service.mailbox import Outbox, Overflow
 
 
@@ -16,15 +18,30 @@ class Client:
         role: What it came as.
         hello: What it said of itself.
         outbox: What waits for it.
+        clock: Its clock and how far away it is.
+        differences: On what its objects and the room did not agree when it came.
     """
 
     role: m.Role
     hello: m.Hello
     outbox: Outbox
+    clock: ClockEstimate = field(default_factory=ClockEstimate)
+    differences: list[m.Difference] = field(default_factory=list)
 
     def wants(self, topic: m.Topic) -> bool:
         """Whether it asked for this kind of telemetry."""
         return self.hello.topics is None or topic in self.hello.topics
+
+    def stats(self) -> m.ClientStats:
+        """What monitors are told about it."""
+        round_trip_ns, offset_ns = self.clock.round_trip_ns, self.clock.offset_ns
+        return m.ClientStats(
+            self.role,
+            self.hello.client,
+            None if round_trip_ns is None else round(round_trip_ns / NS_PER_MS, 3),
+            None if offset_ns is None else round(offset_ns / NS_PER_MS, 3),
+            self.outbox.missed,
+        )
 
 
 class Audience:
@@ -46,11 +63,17 @@ class Audience:
         """Whether any monitor wants this kind of telemetry."""
         return any(client.wants(topic) for client in self.having("monitor"))
 
-    def show(self, topic: m.Topic, message: m.Message) -> None:
-        """Give telemetry to the monitors; only the latest of a topic waits for a slow one."""
+    def show(self, topic: m.Topic, message: m.Message, key: str = "") -> None:
+        """Give telemetry to the monitors; only the latest of a topic waits for a slow one.
+
+        Args:
+            topic: Kind of telemetry.
+            message: The latest of it.
+            key: Of what it is the latest, where a topic speaks of several things.
+        """
         for client in self.having("monitor"):
             if client.wants(topic):
-                client.outbox.update(topic, message)
+                client.outbox.show(topic, message, key)
 
     def show_scene(self, scene: m.SceneState) -> None:
         """Give the room's state to monitors and renderers."""
@@ -65,4 +88,4 @@ class Audience:
                 client.outbox.post(command)
             except Overflow:
                 client.outbox.close(CLOSE_TOO_SLOW, "too many commands wait; read faster")
-        self.show("command", command)
+        self.show("command", command, command.id)

@@ -6,16 +6,17 @@ what the renderer says, and give commands. A live session runs models between th
 replay does the same without waiting, and so comes to the same decisions.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from agent_server.config import Settings
 from agent_server.domain.affect import AffectSample, Calibrated, Calibration
-from agent_server.domain.command import Ack, Command
+from agent_server.domain.command import Ack, Command, Ending
 from agent_server.domain.decision import Decision, GateVerdict, Outcome, SceneVerdict
 from agent_server.domain.face import Face, GazeSample
 from agent_server.domain.gesture import Classification
 from agent_server.domain.motion import BodyLost, Forecast, Window
-from agent_server.domain.scene import ObjectChanged, SceneSnapshot
+from agent_server.domain.scene import Difference, ObjectChanged, RoomState, SceneSnapshot
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.scene.room import Acknowledgement, Room
 from agent_server.scene.rulebook import Rules
@@ -209,6 +210,22 @@ class Core:
     def scene(self) -> SceneSnapshot:
         """The room as it is."""
         return self._room.snapshot()
+
+    def compare(self, shown: Mapping[str, str]) -> tuple[Difference, ...]:
+        """Where a renderer shows something else than the room holds; changes nothing."""
+        return self._room.compare(shown)
+
+    def take_endings(self) -> tuple[Ending, ...]:
+        """The commands that have ended since this was last asked, in order."""
+        return self._room.take_endings()
+
+    def room_state(self) -> RoomState:
+        """All of the room that is to be remembered over a restart."""
+        return self._room.state()
+
+    def restore(self, state: RoomState) -> None:
+        """Go on with a room that has stopped, before anything else has entered."""
+        self._room.restore(state)
 
     # ------------------------------------------------------------------ within
 

@@ -11,18 +11,17 @@ from agent_server.clock import Clock
 from agent_server.config import Settings
 from agent_server.domain.gesture import IDLE
 from agent_server.protocol import messages as m
-from agent_server.protocol.connection import CLOSE_GOING_AWAY
+from agent_server.protocol.codes import CLOSE_GOING_AWAY, CLOSE_INTERNAL
 from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Client
 from agent_server.service.camera import Eyes
 from agent_server.service.journal import Journal, NoJournal
 from agent_server.service.models import Models
-from agent_server.service.session import Session
+from agent_server.service.session import Opening, Session
+from agent_server.service.store import MemoryStore, SessionStore
 from agent_server.service.worker import InferenceWorker
 
 log = logging.getLogger(__name__)
-
-CLOSE_INTERNAL = 1011
 
 
 class HubFull(Exception):
@@ -42,6 +41,7 @@ class Hub:
         models: The models, shared by all sessions.
         clock: Where to read the time.
         open_journal: Where a session of a given id is written down; None writes nothing.
+        store: Where sessions are remembered over a restart; None remembers them in memory.
     """
 
     def __init__(
@@ -51,12 +51,14 @@ class Hub:
         models: Models,
         clock: Clock,
         open_journal: Callable[[str], Journal] | None = None,
+        store: SessionStore | None = None,
     ) -> None:
         self.settings = settings
         self.clock = clock
         self.models = models
         self._rules = rules
         self._open_journal = open_journal
+        self._store = store or MemoryStore()
         self._worker = InferenceWorker(models)
         self._eyes = None if models.face is None else Eyes(models.face)
         self._sessions: dict[str, Session] = {}
@@ -116,14 +118,14 @@ class Hub:
             self._end_if_empty(session)
         return session
 
-    def leave(self, session: Session, client: Client) -> None:
-        """A client's connection is over."""
+    def leave(self, session: Session, client: Client, *, for_good: bool) -> None:
+        """A client's connection is over, for good if it said goodbye."""
         if client in session.audience.clients:
-            session.leave(client)
+            session.leave(client, for_good=for_good)
         if self._sessions.get(session.id) is session:
             self._end_if_empty(session)
 
-    def welcome(self, session: Session, role: m.Role) -> m.Welcome:
+    def welcome(self, session: Session, client: Client) -> m.Welcome:
         """What a client is told when it may stay."""
         gate, server, decide = self.settings.gate, self.settings.server, self.settings.decide
         models = self.models
@@ -132,9 +134,11 @@ class Hub:
             server="agent-server",
             server_version=__version__,
             session=session.id,
-            role=role,
-            epoch=session.epoch,
-            sequence=session.sequence,
+            role=client.role,
+            epoch=session.delivery.epoch,
+            ledger=session.delivery.ledger,
+            resumed=client.hello.ledger == session.delivery.ledger,
+            sequence=session.delivery.sequence,
             heartbeat_s=server.heartbeat_s,
             labels=list(models.classifier.labels),
             gate=m.GateLevels(
@@ -154,7 +158,8 @@ class Hub:
             ),
             limits=m.Limits(server.max_message_bytes, server.max_image_bytes, server.max_errors),
             models=[m.ModelInfo(model.name, task, model.sha256) for task, model in models.by_task],
-            scene=session.scene(),
+            scene=session.delivery.scene(),
+            differences=client.differences,
         )
 
     def _open(self, session_id: str) -> Session:
@@ -162,15 +167,21 @@ class Hub:
             raise HubStopping
         if len(self._sessions) >= self.settings.server.max_sessions:
             raise HubFull
+        saved = self._store.load(session_id)
         session = Session(
             session_id,
             self.settings,
             self._rules,
             self._worker,
             self.clock,
-            # A session that is opened anew counts its commands anew.
-            secrets.token_hex(4),
+            Opening(
+                # A session that is opened anew counts its commands anew.
+                ledger=secrets.token_hex(8) if saved is None else saved.ledger,
+                epoch=secrets.token_hex(4),
+                saved=saved,
+            ),
             NoJournal() if self._open_journal is None else self._open_journal(session_id),
+            self._store,
             self._eyes,
         )
         self._sessions[session_id] = session
@@ -193,11 +204,14 @@ class Hub:
             return
         self._endings[session.id] = asyncio.get_running_loop().call_later(
             self.settings.server.session_linger_s,
-            self._close,
+            self._end,
             session.id,
-            CLOSE_GOING_AWAY,
-            "the session was empty",
         )
+
+    def _end(self, session_id: str) -> None:
+        """A session that nobody came back to is over, and not remembered."""
+        self._close(session_id, CLOSE_GOING_AWAY, "the session was empty")
+        self._store.forget(session_id)
 
     def _close(self, session_id: str, code: int, reason: str) -> None:
         session = self._sessions.pop(session_id)

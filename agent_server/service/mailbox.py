@@ -5,9 +5,9 @@ order, and a client that lets too many pile up is disconnected.
 """
 
 import asyncio
-from collections import deque
+from collections import Counter, deque
 
-from agent_server.protocol.messages import Message
+from agent_server.protocol.messages import Message, Missed
 
 
 class Overflow(Exception):
@@ -27,6 +27,7 @@ class Outbox:
         self._max_commands = max_commands
         self._ready = asyncio.Event()
         self._closing = asyncio.Event()
+        self._untold: Counter[str] = Counter()
         self.missed = 0
         self.close_code: int | None = None
         self.close_reason = ""
@@ -47,12 +48,24 @@ class Outbox:
         self._ordered.appendleft(message)
         self._ready.set()
 
-    def update(self, topic: str, message: Message) -> None:
-        """Replace what waits on a telemetry topic."""
-        if self._latest.pop(topic, None) is not None:
+    def show(self, topic: str, message: Message, key: str = "") -> None:
+        """Replace what waits on a telemetry topic, and count what was never sent.
+
+        Args:
+            topic: Kind of telemetry.
+            message: The latest of it.
+            key: Of what it is the latest, where a topic speaks of several things.
+        """
+        if self.update(f"{topic} {key}", message):
             self.missed += 1
-        self._latest[topic] = message
+            self._untold[topic] += 1
+
+    def update(self, key: str, message: Message) -> bool:
+        """Replace what waits under ``key``; tells whether something did."""
+        was_waiting = self._latest.pop(key, None) is not None
+        self._latest[key] = message
         self._ready.set()
+        return was_waiting
 
     def close(self, code: int, reason: str) -> None:
         """Ask the writer to close the connection after what waits in order was sent."""
@@ -70,8 +83,11 @@ class Outbox:
         await self._ready.wait()
         self._ready.clear()
         messages = [*self._ordered, *self._latest.values()]
+        if self._untold:
+            messages.append(Missed(dict(self._untold)))
         self._ordered.clear()
         self._latest.clear()
+        self._untold.clear()
         if self.close_code is not None and messages:
             self._ready.set()
         return messages

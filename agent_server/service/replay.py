@@ -24,6 +24,7 @@ from agent_server.recording.records import (
     BodyGone,
     CoreEntry,
     RendererChanged,
+    Restored,
     SensorChanged,
     Tick,
     WindowDone,
@@ -118,6 +119,8 @@ class _Follower:
                 self._core.set_renderer(attached, now_ns)
             case SensorChanged(face=face):
                 self._core.set_face(face)
+            case Restored(room=room):
+                self._core.restore(room)
             case BodyGone(stamp_ns=now_ns, body_id=body_id):
                 self._core.lose_body(BodyLost(now_ns, body_id))
 

@@ -1,8 +1,16 @@
 """Who of a session's clients may speak for the body, the face and the room: one at a time."""
 
 from agent_server.errors import InvalidInput
-from agent_server.protocol.connection import CLOSE_REPLACED
+from agent_server.protocol.codes import CLOSE_REPLACED
 from agent_server.service.audience import Client
+
+
+def _may_replace(client: Client, other: Client) -> bool:
+    """Whether a client asked to take over, or is the other one after a broken connection."""
+    hello = client.hello
+    return hello.take_over or (
+        hello.instance is not None and hello.instance == other.hello.instance
+    )
 
 
 class Seats:
@@ -19,7 +27,7 @@ class Seats:
             InvalidInput: If another sensor has the seat and this one did not ask to take over.
         """
         sender = self._senders.get(kind, client)
-        if sender is not client and not client.hello.take_over:
+        if sender is not client and not _may_replace(client, sender):
             raise InvalidInput(
                 f"another sensor already sends this session's {kind}: say hello with "
                 "take_over = true to replace it",
@@ -40,7 +48,7 @@ class Seats:
             InvalidInput: If another renderer has it and this one did not ask to take over.
         """
         if self._renderer is not None:
-            if not client.hello.take_over:
+            if not _may_replace(client, self._renderer):
                 raise InvalidInput(
                     "another renderer acts for this session: say hello with mirror = true to "
                     "watch, or with take_over = true to replace it",

@@ -2,37 +2,28 @@
 
 import asyncio
 import logging
-from collections import Counter, deque
+from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from agent_server.clock import Clock
 from agent_server.config import Settings
-from agent_server.domain.affect import Calibrated
-from agent_server.domain.command import Command
 from agent_server.domain.decision import FacePairing, GateVerdict
-from agent_server.domain.face import Face
 from agent_server.domain.motion import BodyLost
-from agent_server.domain.scene import ObjectChanged
-from agent_server.domain.stamp import NS_PER_MS, NS_PER_S
-from agent_server.errors import InferenceError, InvalidInput
-from agent_server.protocol import convert, faces
+from agent_server.domain.stamp import NS_PER_MS, NS_PER_S, to_ns
+from agent_server.errors import InferenceError
+from agent_server.protocol import convert
 from agent_server.protocol import messages as m
-from agent_server.recording.records import (
-    BodyGone,
-    RendererChanged,
-    SensorChanged,
-    Tick,
-    WindowDone,
-    WindowSkipped,
-)
+from agent_server.recording.records import BodyGone, Tick, WindowDone, WindowSkipped
 from agent_server.scene.rulebook import Rules
-from agent_server.service.audience import Audience, Client
+from agent_server.service.audience import Client
 from agent_server.service.camera import Camera, Eyes
+from agent_server.service.context import Context
 from agent_server.service.core import Core, Job, PendingWindow
+from agent_server.service.delivery import Delivery
 from agent_server.service.journal import Journal
-from agent_server.service.seats import Seats
-from agent_server.service.timeline import Timeline
+from agent_server.service.sensing import Sensing
+from agent_server.service.store import Saved, SessionStore
 from agent_server.service.worker import Inference, InferenceWorker
 
 log = logging.getLogger(__name__)
@@ -40,6 +31,21 @@ log = logging.getLogger(__name__)
 TICK_S = 0.25
 QUIET_NS = NS_PER_S
 """Ticks let time pass only after this long without input; while input comes, it is the clock."""
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """How a session begins.
+
+    Attributes:
+        ledger: Within it, an id of a command means one command for good.
+        epoch: Changes with every opening of the session.
+        saved: What the session was when the server stopped, or None for a new one.
+    """
+
+    ledger: str
+    epoch: str
+    saved: Saved | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +63,9 @@ class Session:
         rules: The room's rules.
         worker: The models.
         clock: Where to read the time.
-        epoch: Changes with every opening of the session.
+        opening: How it begins.
         journal: Where the session is recorded.
+        store: Where it is remembered over a restart.
         eyes: What finds faces in images, or None where images are not taken.
     """
 
@@ -69,28 +76,30 @@ class Session:
         rules: Rules,
         worker: InferenceWorker,
         clock: Clock,
-        epoch: str,
+        opening: Opening,
         journal: Journal,
+        store: SessionStore,
         eyes: Eyes | None = None,
     ) -> None:
         self.id = session
-        self.audience = Audience()
-        self.counters: Counter[str] = Counter()
-        self.sequence = 0
-        self.epoch = epoch
         self._worker = worker
         self._clock = clock
         self._journal = journal
         self._core = Core(session, settings, rules, worker.models)
-        self._timeline = Timeline()
-        self._seats = Seats()
-        self._latest_command: m.CommandMessage | None = None
-        self._shown_scene = self.scene()
+        self._context = Context(session, self._core, clock, journal)
+        self.audience = self._context.audience
+        self.counters = self._context.counters
+        self.delivery = Delivery(
+            self._context, store, opening.ledger, opening.epoch, to_ns(settings.server.resume_s)
+        )
+        camera = None if eyes is None else Camera(eyes)
+        self._sensing = Sensing(self._context, camera, self._enqueue)
         self._jobs: deque[_Waiting] = deque()
         self._wake = asyncio.Event()
         self._is_inferring = False
         self._is_skewed = False
-        self._camera = None if eyes is None else Camera(eyes)
+        if opening.saved is not None:
+            self.delivery.restore(opening.saved)
 
     # ------------------------------------------------------------------ clients
 
@@ -102,29 +111,38 @@ class Session:
         """
         acts = client.role == "renderer" and not client.hello.mirror
         if acts:
-            self._seats.claim_room(client)
+            self._context.seats.claim_room(client)
         self.audience.clients.append(client)
         if acts:
-            self._hand_over(client)
+            self.delivery.hand_over(client)
         if client.role == "sensor":
-            self._update_face(is_open=True)
+            self._sensing.update_face(is_open=True)
 
-    def leave(self, client: Client) -> None:
-        """Remove a client."""
+    def leave(self, client: Client, *, for_good: bool) -> None:
+        """Remove a client.
+
+        Args:
+            client: Whose connection is over.
+            for_good: Whether it said goodbye; else it may come back and resume.
+        """
         self.audience.clients.remove(client)
-        self._timeline.forget(id(client))
+        self._context.timeline.forget(id(client))
         if client.role == "sensor":
-            self._update_face(is_open=False)
-        if self._seats.leave(client):
-            now_ns = self._now()
-            self._journal.append_core(RendererChanged(now_ns, attached=False))
-            self._deliver(self._core.set_renderer(False, now_ns), now_ns)
+            self._sensing.update_face(is_open=False)
+        if self._context.seats.leave(client):
+            self.delivery.lose(for_good=for_good)
 
-    def scene(self) -> m.SceneState:
-        """The room as it is."""
-        return convert.scene_message(self._core.scene())
-
-    # ------------------------------------------------------------------ input
+    def warn_of_jump(self, client: Client, jump_ns: int) -> None:
+        """Tell the monitors that a client's clock, or this one, has jumped."""
+        self.counters["clock_jumps"] += 1
+        self.audience.show(
+            "error",
+            m.ErrorMessage(
+                "clock_jump",
+                f"the clock of {client.role} {client.hello.client!r} jumped by "
+                f"{jump_ns / NS_PER_MS:.0f} ms: send times of a monotonic clock",
+            ),
+        )
 
     def receive(self, client: Client, message: m.Message) -> None:
         """Take a message of a client.
@@ -132,132 +150,10 @@ class Session:
         Raises:
             InvalidInput: If it is refused; no stage has seen it then.
         """
-        arrival_ns = self._clock.now_ns()
-        match message:
-            case m.Skeleton() | m.PackedSkeleton():
-                self._take_skeleton(client, message, arrival_ns)
-            case m.FacePoints() | m.PackedFacePoints() | m.Blendshapes():
-                stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
-                self._look(faces.face_from_message(message, stamp_ns), client)
-                self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
-            case m.Image():
-                self._take_image(client, message, arrival_ns)
-            case m.Affect():
-                self._take_affect(client, message, arrival_ns)
-            case m.Gaze():
-                self._take_gaze(client, message, arrival_ns)
-            case m.Calibrate():
-                self._take_calibration(client, message, arrival_ns)
-            case m.AckMessage():
-                self._take_ack(client, message)
-            case m.SceneEvent():
-                self._take_scene_event(client, message)
-
-    def _take_skeleton(
-        self, client: Client, message: m.Skeleton | m.PackedSkeleton, arrival_ns: int
-    ) -> None:
-        stamp_ns = self._stamp(client, "body", message.originating_ns, arrival_ns)
-        frame = convert.skeleton_from_message(message, stamp_ns)
-        shown = self._core.perception.latest
-        jobs = self._core.observe(frame)
-        self._accept(client, "body", message.originating_ns, stamp_ns, arrival_ns)
-        self.counters["frames"] += 1
-        self._journal.append_input(frame)
-        self._enqueue(jobs, arrival_ns)
-        latest = self._core.perception.latest
-        if latest is not None and latest is not shown and self.audience.wants("pose"):
-            self.audience.show("pose", convert.pose_message(latest))
-
-    def _take_affect(self, client: Client, message: m.Affect, arrival_ns: int) -> None:
-        stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
-        sample = convert.affect_from_message(message, stamp_ns)
-        self._core.feel(sample)
-        self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
-        self.counters["affect_samples"] += 1
-        self._journal.append_input(sample)
-        self.audience.show("affect", convert.affect_telemetry(sample))
-
-    def _take_gaze(self, client: Client, message: m.Gaze, arrival_ns: int) -> None:
-        stamp_ns = self._stamp(client, "gaze", message.originating_ns, arrival_ns)
-        sample = faces.gaze_from_message(message, stamp_ns)
-        self._core.gaze(sample)
-        self._accept(client, "gaze", message.originating_ns, stamp_ns, arrival_ns)
-        self.counters["gazes"] += 1
-        self._journal.append_input(sample)
-
-    def _take_calibration(self, client: Client, message: m.Calibrate, arrival_ns: int) -> None:
-        stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
-        calibration = faces.calibration_from_message(message, stamp_ns)
-        calibrated = self._core.calibrate(calibration)
-        self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
-        self._journal.append_input(calibration)
-        self._show_calibration(calibrated, client)
-
-    def _take_image(self, client: Client, message: m.Image, arrival_ns: int) -> None:
-        if self._camera is None:
-            raise InvalidInput(
-                "this server has no networks that find a face in an image: send landmarks, "
-                "blendshapes or valence and arousal",
-                field="type",
-                code="no_model",
-            )
-        stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
-        self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
-        self.counters["images"] += 1
-        self.counters["skipped_images"] += self._camera.push(client, message.jpeg, stamp_ns)
-
-    def _stamp(self, client: Client, kind: str, originating_ns: int, arrival_ns: int) -> int:
-        """The stamp, on the session's time line, of what a sensor may send; changes nothing."""
-        self._seats.require_stream(kind, client)
-        return self._timeline.map(id(client), originating_ns, arrival_ns)
-
-    def _accept(
-        self, client: Client, kind: str, originating_ns: int, stamp_ns: int, arrival_ns: int
-    ) -> None:
-        """What came with this stamp was taken."""
-        self._seats.take_stream(kind, client)
-        self._timeline.accept(id(client), originating_ns, stamp_ns, arrival_ns)
-
-    def _look(self, face: Face, client: Client) -> None:
-        try:
-            sample, calibrated = self._core.look(face)
-        except InferenceError as error:
-            self.counters["affect_failures"] += 1
-            log.error("session %s: no affect from a face: %s", self.id, error)
-            self.audience.show("error", m.ErrorMessage("affect_failed", str(error)))
-            return
-        self.counters["faces"] += 1
-        self._journal.append_input(face)
-        self.audience.show("affect", convert.affect_telemetry(sample))
-        self._show_calibration(calibrated, client)
-
-    def _show_calibration(self, calibrated: Calibrated | None, client: Client) -> None:
-        """Tell the monitors and the sensor what a calibration came to."""
-        if calibrated is None:
-            return
-        state = faces.calibrated_message(calibrated)
-        self.audience.show("calibration", state)
-        client.outbox.update("calibration", state)
-
-    def _take_ack(self, client: Client, message: m.AckMessage) -> None:
-        self._seats.require_room(client)
-        ack = convert.ack_from_message(message, self._now())
-        heard = self._core.acknowledge(ack)
-        self.counters["acks" if heard.taken else "stale_acks"] += 1
-        self._journal.append_input(ack)
-        self._deliver(heard.commands, ack.stamp_ns)
-        self.audience.show(
-            "ack",
-            m.AckTelemetry(message.command_id, message.status, message.step, message.reason),
-        )
-
-    def _take_scene_event(self, client: Client, message: m.SceneEvent) -> None:
-        self._seats.require_room(client)
-        event = ObjectChanged(self._now(), message.object, message.state)
-        commands = self._core.change_object(event)
-        self.counters["scene_events"] += 1
-        self._journal.append_input(event)
-        self._deliver(commands, event.stamp_ns)
+        if client.role == "sensor":
+            self._sensing.receive(client, message, self._clock.now_ns())
+        else:
+            self.delivery.receive(client, message)
 
     # ------------------------------------------------------------------ work
 
@@ -266,8 +162,7 @@ class Session:
         async with asyncio.TaskGroup() as group:
             group.create_task(self._work(), name=f"{self.id}: jobs")
             group.create_task(self._tick(), name=f"{self.id}: ticks")
-            if self._camera is not None:
-                group.create_task(self._see(self._camera), name=f"{self.id}: images")
+            group.create_task(self._sensing.see(), name=f"{self.id}: images")
 
     def close(self, code: int, reason: str) -> None:
         """Send all clients away and end the recording."""
@@ -286,32 +181,10 @@ class Session:
                 else:
                     await self._decide(waiting.job, waiting.arrival_ns)
 
-    async def _see(self, camera: Camera) -> None:
-        """Look for the face in one image after the other, always the latest."""
-        while True:
-            image = await camera.take()
-            self._journal.append_image(image.jpeg, image.stamp_ns)
-            try:
-                face = await camera.look(image)
-                if face is None:
-                    self.counters["images_without_face"] += 1
-                elif image.client in self.audience.clients:
-                    self._look(face, image.client)
-            except InvalidInput as error:
-                # The image was bad, or a face came in another way that is newer.
-                self.counters["rejected_messages"] += 1
-                image.client.outbox.update(
-                    "image", m.ErrorMessage(error.code, str(error), error.field)
-                )
-            except InferenceError as error:
-                self.counters["affect_failures"] += 1
-                log.error("session %s: no face from an image: %s", self.id, error)
-                self.audience.show("error", m.ErrorMessage("face_failed", str(error)))
-
     def _lose_body(self, lost: BodyLost) -> None:
         self.counters["bodies_lost"] += 1
         self._journal.append_core(BodyGone(lost.stamp_ns, lost.body_id))
-        self._deliver(self._core.lose_body(lost), lost.stamp_ns)
+        self.delivery.deliver(self._core.lose_body(lost), lost.stamp_ns)
 
     async def _decide(self, pending: PendingWindow, arrival_ns: int) -> None:
         window = pending.window
@@ -331,7 +204,7 @@ class Session:
         result = self._core.decide(pending, inference.forecast, inference.classification)
         end_ns = self._clock.now_ns()
         # The command leaves first; what monitors and the recording get can wait.
-        self._deliver(result.commands, window.end_ns)
+        self.delivery.deliver(result.commands, window.end_ns)
         self.counters["decisions"] += 1
         failure = inference.forecast.failure
         self.counters["predictor_failures"] += failure is not None
@@ -352,16 +225,17 @@ class Session:
     async def _tick(self) -> None:
         while True:
             await asyncio.sleep(TICK_S)
+            self.delivery.wait_no_longer()
             arrival_ns = self._clock.now_ns()
             is_busy = self._jobs or self._is_inferring
-            is_quiet = self._timeline.idle_ns(arrival_ns) >= QUIET_NS
+            is_quiet = self._context.timeline.idle_ns(arrival_ns) >= QUIET_NS
             if is_busy or not is_quiet or not self._core.is_waiting:
                 continue
-            now_ns = self._timeline.now(arrival_ns)
+            now_ns = self._context.timeline.now(arrival_ns)
             self._journal.append_core(Tick(now_ns))
             jobs, commands = self._core.tick(now_ns)
             self._enqueue(jobs, arrival_ns)
-            self._deliver(commands, now_ns)
+            self.delivery.deliver(commands, now_ns)
 
     def _enqueue(self, jobs: Iterable[Job], arrival_ns: int) -> None:
         for job in jobs:
@@ -394,20 +268,6 @@ class Session:
                 ),
             )
 
-    def _deliver(self, commands: Iterable[Command], now_ns: int) -> None:
-        """Send commands, and the room where it has changed."""
-        for command in commands:
-            self.sequence = command.sequence
-            self.counters["commands"] += 1
-            self._latest_command = message = convert.command_message(command, self.epoch)
-            self.audience.order(message)
-            self._journal.append_output(message, message.issued_ns)
-        scene = self.scene()
-        if scene != self._shown_scene:
-            self._shown_scene = scene
-            self.audience.show_scene(scene)
-            self._journal.append_output(scene, now_ns)
-
     def _stats(self) -> m.StatsMessage:
         c = self.counters
         return m.StatsMessage(
@@ -420,6 +280,7 @@ class Session:
             rejected_messages=c["rejected_messages"],
             missed_telemetry=self.audience.missed,
             counters={**c, **self._core.perception.counters},
+            clients=[client.stats() for client in self.audience.clients],
         )
 
     def _timing(
@@ -433,24 +294,3 @@ class Session:
             decide_ms=round((end_ns - begin_ns) / NS_PER_MS, 3),
             total_ms=round((end_ns - arrival_ns) / NS_PER_MS, 3),
         )
-
-    # ------------------------------------------------------------------ within
-
-    def _now(self) -> int:
-        return self._timeline.now(self._clock.now_ns())
-
-    def _hand_over(self, renderer: Client) -> None:
-        """Let a renderer act for the room, from the command on that is being carried out."""
-        now_ns = self._now()
-        latest = self._latest_command
-        if latest is not None and latest.id == self.scene().command_id:
-            renderer.outbox.post(latest)
-        self._journal.append_core(RendererChanged(now_ns, attached=True))
-        self._deliver(self._core.set_renderer(True, now_ns), now_ns)
-
-    def _update_face(self, *, is_open: bool) -> None:
-        """A face is expected unless every sensor that is there has none, or the gaze instead."""
-        said = {sensor.hello.face for sensor in self.audience.having("sensor")} or {"expected"}
-        face: m.FaceKind = "expected" if "expected" in said else "gaze" if "gaze" in said else "none"
-        self._core.set_face(face)
-        self._journal.append_core(SensorChanged(self._now(), is_open, face))

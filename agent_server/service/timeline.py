@@ -21,6 +21,11 @@ class Timeline:
         self._last_ns: int | None = None
         self._last_arrival_ns = 0
 
+    def resume(self, stamp_ns: int, arrival_ns: int) -> None:
+        """Go on from ``stamp_ns`` after a restart: every sensor is mapped onto the line then."""
+        self._last_ns = stamp_ns
+        self._last_arrival_ns = arrival_ns
+
     def map(self, connection: int, stamp_ns: int, arrival_ns: int) -> int:
         """Where a connection's stamp lies on the session's time line; changes nothing.
 

@@ -25,6 +25,7 @@ from agent_server.scene.rules import default_rules, load_rules
 from agent_server.service.hub import Hub
 from agent_server.service.models import FaceNetworks, Models
 from agent_server.service.recorder import recorder
+from agent_server.service.store import FolderStore
 from agent_server.transports.app import create_app
 
 GOODBYE_S = 0.1
@@ -68,6 +69,7 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
 
     Raises:
         RuleError: If the rule file is wrong.
+        ConfigError: If the folder of sessions cannot be written.
     """
     clock = SystemClock()
     open_journal = None
@@ -80,7 +82,9 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
             clock=clock,
             with_images=settings.face.record_images,
         )
-    return Hub(settings, load_room(settings, models), models, clock, open_journal)
+    state = settings.server.state
+    store = None if state is None else FolderStore(Path(state), clock.wall_ns())
+    return Hub(settings, load_room(settings, models), models, clock, open_journal, store)
 
 
 def load_room(settings: Settings, models: Models) -> Rules:

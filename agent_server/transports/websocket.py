@@ -9,7 +9,9 @@ from typing import TypeGuard, get_args
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
+from agent_server.domain.stamp import to_ns
 from agent_server.errors import InvalidInput
+from agent_server.protocol import codes
 from agent_server.protocol import connection as c
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS, Codec, Wire
@@ -21,6 +23,8 @@ from agent_server.service.session import Session
 log = logging.getLogger(__name__)
 
 CLOSE_ABNORMAL = 1006
+GOODBYES = (codes.CLOSE_NORMAL, codes.CLOSE_GOING_AWAY)
+"""How a client closes that does not mean to come back; a page that is left says the second."""
 FAREWELL_S = 2.0
 SESSION_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}")
 SESSION_ID_RULE = "a session id has 1 to 64 letters, digits, '.', '_' and '-'"
@@ -38,20 +42,20 @@ def websocket_router(hub: Hub) -> APIRouter:
         offered = websocket.scope.get("subprotocols", [])
         if codec is None and offered:
             await link.dismiss(
-                c.CLOSE_WRONG_VERSION,
+                codes.CLOSE_WRONG_VERSION,
                 "wrong_version",
                 f"the client offers the subprotocols {', '.join(offered)}, this server speaks "
                 f"protocol {m.PROTOCOL}: {', '.join(CODECS)}",
             )
         elif not SESSION_ID.fullmatch(session_id):
             await link.dismiss(
-                c.CLOSE_BAD_HELLO,
+                codes.CLOSE_BAD_HELLO,
                 "bad_session_id",
                 SESSION_ID_RULE,
             )
         elif not _is_role(role):
             await link.dismiss(
-                c.CLOSE_BAD_HELLO,
+                codes.CLOSE_BAD_HELLO,
                 "unknown_role",
                 f"there is no role {role!r}: connect as {', '.join(get_args(m.Role))}",
             )
@@ -88,7 +92,7 @@ class _Link:
         """
         event = await self._websocket.receive()
         if event["type"] == "websocket.disconnect":
-            raise WebSocketDisconnect(event.get("code", c.CLOSE_NORMAL))
+            raise WebSocketDisconnect(event.get("code", codes.CLOSE_NORMAL))
         data: Wire = event["bytes"] if event.get("text") is None else event["text"]
         return data
 
@@ -136,12 +140,15 @@ class _Visit:
         self._link = link
         self._session_id = session_id
         self._connection = c.ServerConnection(
+            session_id,
             role,
             link.codec,
             max_message_bytes=server.max_message_bytes,
             max_image_bytes=server.max_image_bytes,
             max_errors=server.max_errors,
+            heartbeat_ns=to_ns(server.heartbeat_s),
         )
+        self._said_goodbye = False
         self._outbox = Outbox(server.command_queue)
         self._client: Client | None = None
         self._session: Session | None = None
@@ -153,11 +160,12 @@ class _Visit:
                 timeout = self._hub.settings.server.hello_timeout_s
                 reader = group.create_task(self._read(timeout))
                 closing = group.create_task(self._outbox.closing())
-                tasks = (reader, writer, closing)
+                heart = group.create_task(self._beat())
+                tasks = (reader, writer, closing, heart)
                 await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
                 # Whoever ends first ends the visit; the writer may still send what it has, but
                 # a client that takes nothing any more does not keep its place.
-                self._outbox.close(c.CLOSE_NORMAL, "")
+                self._outbox.close(codes.CLOSE_NORMAL, "")
                 reader.cancel()
                 await asyncio.wait((writer,), timeout=FAREWELL_S)
                 for task in tasks:
@@ -167,7 +175,7 @@ class _Visit:
         finally:
             self._connection.close()
             if self._session is not None and self._client is not None:
-                self._hub.leave(self._session, self._client)
+                self._hub.leave(self._session, self._client, for_good=self._said_goodbye)
 
     async def _read(self, hello_timeout_s: float) -> None:
         try:
@@ -177,11 +185,15 @@ class _Visit:
             self._refuse(
                 c.Refused(
                     m.ErrorMessage("no_hello", "no hello came in time", fatal=True),
-                    c.CLOSE_HELLO_TIMEOUT,
+                    codes.CLOSE_HELLO_TIMEOUT,
                 )
             )
         while self._connection.state is c.State.OPEN:
-            data = await self._link.receive()
+            try:
+                data = await self._link.receive()
+            except WebSocketDisconnect as disconnect:
+                self._said_goodbye = disconnect.code in GOODBYES
+                raise
             # Somebody may have taken this client's place while it was sending.
             if self._outbox.close_code is not None:
                 return
@@ -199,13 +211,17 @@ class _Visit:
                     self._refuse(self._connection.refuse(error))
             case c.Reply(message):
                 self._post(message)
+            case c.ClockJumped(by_ns):
+                assert self._session is not None  # noqa: S101
+                assert self._client is not None  # noqa: S101
+                self._session.warn_of_jump(self._client, by_ns)
             case c.Refused():
                 self._refuse(event)
             case c.Greeted(hello):
                 self._join(hello)
 
     def _join(self, hello: m.Hello) -> None:
-        client = Client(self._connection.role, hello, self._outbox)
+        client = Client(self._connection.role, hello, self._outbox, self._connection.clock)
         try:
             session = self._hub.join(self._session_id, client)
         except HubFull:
@@ -215,7 +231,7 @@ class _Visit:
                     m.ErrorMessage(
                         "full", f"{limit} sessions are open and no more are admitted", fatal=True
                     ),
-                    c.CLOSE_FULL,
+                    codes.CLOSE_FULL,
                 )
             )
             return
@@ -223,7 +239,7 @@ class _Visit:
             self._refuse(
                 c.Refused(
                     m.ErrorMessage("stopping", "the server is stopping", fatal=True),
-                    c.CLOSE_GOING_AWAY,
+                    codes.CLOSE_GOING_AWAY,
                 )
             )
             return
@@ -231,13 +247,13 @@ class _Visit:
             self._refuse(
                 c.Refused(
                     m.ErrorMessage(error.code, str(error), error.field, fatal=True),
-                    c.CLOSE_REPLACED,
+                    codes.CLOSE_REPLACED,
                 )
             )
             return
         self._client, self._session = client, session
         # Before anything that the session has for this client.
-        self._outbox.precede(self._hub.welcome(session, client.role))
+        self._outbox.precede(self._hub.welcome(session, client))
 
     def _refuse(self, refused: c.Refused) -> None:
         if self._session is not None:
@@ -251,7 +267,20 @@ class _Visit:
         try:
             self._outbox.post(message)
         except Overflow:
-            self._outbox.close(c.CLOSE_TOO_SLOW, "too many answers wait; read faster")
+            self._outbox.close(codes.CLOSE_TOO_SLOW, "too many answers wait; read faster")
+
+    async def _beat(self) -> None:
+        """Ping the client once it is welcome; only the latest ping waits for a slow one."""
+        heartbeat_s = self._hub.settings.server.heartbeat_s
+        while True:
+            await asyncio.sleep(heartbeat_s)
+            if self._connection.state is not c.State.OPEN:
+                continue
+            match self._connection.beat(self._hub.clock.now_ns()):
+                case c.Reply(message):
+                    self._outbox.update("ping", message)
+                case c.Refused() as refused:
+                    self._refuse(refused)
 
     async def _write(self) -> None:
         while True:

@@ -11,7 +11,7 @@ from websockets.exceptions import ConnectionClosed
 from agent_server.config import GateSettings, ServerSettings, Settings
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS
-from agent_server.protocol.connection import (
+from agent_server.protocol.codes import (
     CLOSE_BAD_HELLO,
     CLOSE_FULL,
     CLOSE_GOING_AWAY,

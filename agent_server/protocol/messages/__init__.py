@@ -69,7 +69,9 @@ PROTOCOL_MAJOR = 1
 SUBPROTOCOL_JSON = "agent-server.v1.json"
 SUBPROTOCOL_MSGPACK = "agent-server.v1.msgpack"
 
-_FromClient = Hello | Ping | Pong | Affect | Blendshapes | Gaze | Calibrate | AckMessage | SceneEvent
+_FromClient = (
+    Hello | Ping | Pong | Affect | Blendshapes | Gaze | Calibrate | AckMessage | SceneEvent
+)
 ClientMessage = _FromClient | Skeleton | FacePoints
 """What a client sends in the JSON coding, where an image is a binary frame."""
 PackedClientMessage = _FromClient | PackedSkeleton | PackedFacePoints | Image

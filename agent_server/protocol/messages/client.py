@@ -46,6 +46,16 @@ class Hello(Message, frozen=True, tag="hello"):
     protocol: Annotated[Version, told("Version that the client speaks, as MAJOR.MINOR.")]
     client: Annotated[Name, told("What the client is called, for people.")]
     client_version: Annotated[Label, told("Version of the client, for people.")] = ""
+    instance: (
+        Annotated[
+            Name,
+            told(
+                "Random identity of this run of the client: a connection takes the place of an "
+                "earlier one with the same."
+            ),
+        ]
+        | None
+    ) = None
     token: (
         Annotated[str, told("Secret that admits the client, where one is needed.", max_length=4096)]
         | None
@@ -54,7 +64,9 @@ class Hello(Message, frozen=True, tag="hello"):
         Annotated[Name, told("Session that the client means; the address must name the same.")]
         | None
     ) = None
-    role: Annotated[Role, told("Role that the client means; the address must name the same.")] | None = None
+    role: (
+        Annotated[Role, told("Role that the client means; the address must name the same.")] | None
+    ) = None
     capabilities: Annotated[
         list[Name],
         told(
@@ -76,9 +88,7 @@ class Hello(Message, frozen=True, tag="hello"):
         bool, told("Replace the sensor or acting renderer that is there already.")
     ] = False
     topics: (
-        Annotated[
-            list[Topic], told("Monitors: kinds of telemetry that are wanted.", max_length=16)
-        ]
+        Annotated[list[Topic], told("Monitors: kinds of telemetry that are wanted.", max_length=16)]
         | None
     ) = None
     last_epoch: (
@@ -97,7 +107,9 @@ class Hello(Message, frozen=True, tag="hello"):
     objects: (
         Annotated[
             dict[Name, Name],
-            told("Renderers: state of each object as it is shown, to be reconciled.", max_length=64),
+            told(
+                "Renderers: state of each object as it is shown, to be reconciled.", max_length=64
+            ),
         ]
         | None
     ) = None
@@ -149,9 +161,7 @@ class FacePoints(Message, frozen=True, tag="face"):
     """The landmarks of one face at one instant (JSON coding)."""
 
     originating_ns: CaptureTime
-    format: Annotated[
-        FaceFormat, told("Order of the points; `dlib68` is that of dlib and iBUG.")
-    ]
+    format: Annotated[FaceFormat, told("Order of the points; `dlib68` is that of dlib and iBUG.")]
     width: Annotated[ImageSide, told("Width of the image.")]
     height: Annotated[ImageSide, told("Height of the image.")]
     points: Annotated[
@@ -168,9 +178,7 @@ class PackedFacePoints(Message, frozen=True, tag="face"):
     """The landmarks of one face at one instant (MessagePack coding)."""
 
     originating_ns: CaptureTime
-    format: Annotated[
-        FaceFormat, told("Order of the points; `dlib68` is that of dlib and iBUG.")
-    ]
+    format: Annotated[FaceFormat, told("Order of the points; `dlib68` is that of dlib and iBUG.")]
     width: Annotated[ImageSide, told("Width of the image.")]
     height: Annotated[ImageSide, told("Height of the image.")]
     points: Annotated[
@@ -230,9 +238,9 @@ class AckMessage(Message, frozen=True, tag="ack"):
 
     command_id: Annotated[CommandId, told("Which command.")]
     status: Annotated[AckStatus, told("What became of it; `done` and `failed` are the end.")]
-    step: (
-        Annotated[int, told("Index of the step that has ended.", ONE, ge=0, le=1000)] | None
-    ) = None
+    step: Annotated[int, told("Index of the step that has ended.", ONE, ge=0, le=1000)] | None = (
+        None
+    )
     reason: (
         Annotated[
             Text,

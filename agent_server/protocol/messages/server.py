@@ -88,9 +88,7 @@ class Welcome(Message, frozen=True, tag="welcome"):
     server_version: Annotated[Label, told("Version of the server.")]
     session: Annotated[Name, told("Session of this connection.")]
     role: Annotated[Role, told("Role of this connection.")]
-    epoch: Annotated[
-        Epoch, told("Changes whenever the session is opened, after a restart too.")
-    ]
+    epoch: Annotated[Epoch, told("Changes whenever the session is opened, after a restart too.")]
     ledger: Annotated[
         Epoch,
         told(
@@ -101,7 +99,8 @@ class Welcome(Message, frozen=True, tag="welcome"):
     resumed: Annotated[bool, told("Whether hello named this ledger.")]
     sequence: Annotated[Count, told("Sequence of the last command, 0 before the first.")]
     heartbeat_s: Annotated[
-        Seconds, told("How often either side pings; one that hears nothing for 2.5 of these may leave.")
+        Seconds,
+        told("How often either side pings; one that hears nothing for 2.5 of these may leave."),
     ]
     labels: Annotated[list[str], told("Gestures that the classifier tells apart.")]
     gate: Annotated[GateLevels, told("Thresholds of the affect gate.")]
@@ -147,9 +146,7 @@ class CommandMessage(Message, frozen=True, tag="command"):
         int,
         told("It is not to be started later than this after it was issued.", "ms", ge=0, le=10**12),
     ]
-    preempts: (
-        Annotated[CommandId, told("Command that is cut short by this one.")] | None
-    ) = None
+    preempts: Annotated[CommandId, told("Command that is cut short by this one.")] | None = None
     age_ms: Annotated[
         int, told("Time since it was issued, when it is sent again.", "ms", ge=0, le=10**12)
     ] = 0

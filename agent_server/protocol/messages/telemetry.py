@@ -67,9 +67,9 @@ class AffectTelemetry(Message, frozen=True, tag="affect_state"):
             "`points68` or `blendshapes`."
         ),
     ] = "client"
-    delay_ms: (
-        Annotated[Milliseconds, told("How far an average lags behind the face.")] | None
-    ) = None
+    delay_ms: Annotated[Milliseconds, told("How far an average lags behind the face.")] | None = (
+        None
+    )
 
 
 class CalibrationState(Message, frozen=True, tag="calibration_state"):
@@ -93,7 +93,9 @@ class AckTelemetry(Message, frozen=True, tag="ack_state"):
 
     command_id: Annotated[CommandId, told("Which command.")]
     status: Annotated[Name, told("A status of `ack`, or how the server ended it.")]
-    step: Annotated[int, told("Index of the step that has ended.", ONE, ge=0, le=1000)] | None = None
+    step: Annotated[int, told("Index of the step that has ended.", ONE, ge=0, le=1000)] | None = (
+        None
+    )
     reason: Annotated[str, told("Why it failed.")] | None = None
 
 

@@ -3,10 +3,12 @@
 import pytest
 
 from agent_server.errors import InvalidInput
+from agent_server.protocol import codes
 from agent_server.protocol import connection as c
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS
 
+S = 1_000_000_000
 JSON = CODECS[m.SUBPROTOCOL_JSON]
 HELLO = JSON.encode(m.Hello("1.3", "tester"))
 AFFECT = JSON.encode(m.Affect(1, 0.0, 0.0))
@@ -14,7 +16,13 @@ AFFECT = JSON.encode(m.Affect(1, 0.0, 0.0))
 
 def connection(role="sensor", *, greeted=True, max_errors=3):
     made = c.ServerConnection(
-        role, JSON, max_message_bytes=4096, max_image_bytes=9000, max_errors=max_errors
+        "s",
+        role,
+        JSON,
+        max_message_bytes=4096,
+        max_image_bytes=9000,
+        max_errors=max_errors,
+        heartbeat_ns=2 * S,
     )
     if greeted:
         assert isinstance(made.receive(HELLO, 0), c.Greeted)
@@ -33,7 +41,7 @@ def test_a_wrong_major_version_is_refused_with_both_versions():
     made = connection(greeted=False)
     event = made.receive(JSON.encode(m.Hello("2.0", "tester")), 0)
     assert isinstance(event, c.Refused)
-    assert event.close_code == c.CLOSE_WRONG_VERSION
+    assert event.close_code == codes.CLOSE_WRONG_VERSION
     assert "2.0" in event.error.message
     assert m.PROTOCOL in event.error.message
     assert made.state is c.State.CLOSED
@@ -44,7 +52,7 @@ def test_anything_but_hello_comes_too_early(first):
     made = connection(greeted=False)
     event = made.receive(first, 0)
     assert isinstance(event, c.Refused)
-    assert event.close_code == c.CLOSE_BAD_HELLO
+    assert event.close_code == codes.CLOSE_BAD_HELLO
     assert event.error.fatal
 
 
@@ -82,7 +90,7 @@ def test_errors_that_go_on_end_the_connection():
     for _ in range(3):
         assert made.receive("nonsense", 0).close_code is None
     last = made.receive("nonsense", 0)
-    assert last.close_code == c.CLOSE_TOO_MANY_ERRORS
+    assert last.close_code == codes.CLOSE_TOO_MANY_ERRORS
     assert last.error.fatal
     assert made.rejected == 4
 
@@ -99,7 +107,7 @@ def test_an_error_found_further_in_counts_too():
     made = connection(max_errors=1)
     error = InvalidInput("late", field="originating_ns", code="out_of_order")
     assert made.refuse(error).error == m.ErrorMessage("out_of_order", "late", "originating_ns")
-    assert made.refuse(error).close_code == c.CLOSE_TOO_MANY_ERRORS
+    assert made.refuse(error).close_code == codes.CLOSE_TOO_MANY_ERRORS
 
 
 def test_a_closed_connection_stays_closed():

@@ -66,6 +66,7 @@ def test_the_core_log_is_one_object_of_several_kinds(write: Callable[[str], Path
     assert core["properties"]["kind"]["enum"] == [
         "body_lost",
         "renderer",
+        "restored",
         "sensor",
         "skipped",
         "tick",

@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 
-from agent_server.protocol.messages import Ping
+from agent_server.protocol.messages import Missed, Ping
 from agent_server.service.mailbox import Outbox, Overflow
 
 
@@ -20,9 +20,9 @@ async def test_what_is_posted_leaves_in_order_before_telemetry():
 async def test_only_the_latest_of_a_topic_waits_and_the_rest_is_counted():
     box = Outbox(4)
     for value in range(5):
-        box.update("pose", Ping(value))
-    box.update("stats", Ping(7))
-    assert await box.take() == [Ping(4), Ping(7)]
+        box.show("pose", Ping(value))
+    box.show("stats", Ping(7))
+    assert await box.take() == [Ping(4), Ping(7), Missed({"pose": 4})]
     assert box.missed == 4
 
 

@@ -3,6 +3,7 @@
 import asyncio
 from contextlib import asynccontextmanager, suppress
 
+import msgspec
 import pytest
 
 from agent_server.clock import ManualClock
@@ -14,7 +15,8 @@ from agent_server.scene.rules import default_rules
 from agent_server.service.audience import Client
 from agent_server.service.journal import NoJournal
 from agent_server.service.mailbox import Outbox
-from agent_server.service.session import Session
+from agent_server.service.session import Opening, Session
+from agent_server.service.store import MemoryStore
 from agent_server.service.worker import InferenceWorker
 from tests.support.bodies import stream
 from tests.support.models import fake_models
@@ -31,7 +33,14 @@ class Room:
         self.worker = InferenceWorker(fake_models())
         settings = Settings(gate=GateSettings(mode="off"))
         self.session = Session(
-            "s", settings, default_rules(), self.worker, self.clock, "epoch", NoJournal()
+            "s",
+            settings,
+            default_rules(),
+            self.worker,
+            self.clock,
+            Opening("ledger", "epoch"),
+            NoJournal(),
+            MemoryStore(),
         )
 
     def join(self, role, **hello):
@@ -80,7 +89,7 @@ async def test_a_refused_frame_neither_moves_time_nor_takes_a_seat():
         assert first.outbox.close_code is None
         assert r.session.counters["frames"] == 3
         r.session.receive(first, good)
-        assert r.session._now() == GESTURE[5].originating_ns
+        assert r.session._context.now() == GESTURE[5].originating_ns
 
 
 async def test_a_renderer_that_comes_back_gets_the_command_that_is_being_carried_out():
@@ -88,12 +97,14 @@ async def test_a_renderer_that_comes_back_gets_the_command_that_is_being_carried
         sensor, renderer = r.join("sensor"), r.join("renderer")
         await r.send(sensor, GESTURE)
         (command,) = await posted(renderer, m.CommandMessage)
-        r.session.leave(renderer)
+        r.session.leave(renderer, for_good=True)
         again = r.join("renderer")
-        assert await posted(again, m.CommandMessage) == [command]
+        (sent_again,) = await posted(again, m.CommandMessage)
+        assert sent_again.age_ms == (r.session._context.now() - command.issued_ns) // 1_000_000 > 0
+        assert msgspec.structs.replace(sent_again, age_ms=0) == command
         r.session.receive(again, m.AckMessage(command.id, "done"))
         assert r.session.scene().objects["hifi"] == "low"
-        r.session.leave(again)
+        r.session.leave(again, for_good=True)
         assert await posted(r.join("renderer"), m.CommandMessage) == []
 
 

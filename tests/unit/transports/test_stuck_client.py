@@ -7,7 +7,7 @@ from agent_server.clock import SystemClock
 from agent_server.config import ServerSettings, Settings
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS
-from agent_server.protocol.connection import CLOSE_TOO_SLOW
+from agent_server.protocol.codes import CLOSE_TOO_SLOW
 from agent_server.scene.rules import default_rules
 from agent_server.service.hub import Hub
 from agent_server.transports.websocket import FAREWELL_S, _Link, _Visit
