@@ -152,8 +152,8 @@ class Room:
     def restore(self, state: RoomState) -> None:
         """Go on where a room has stopped.
 
-        What the rules no longer know is left out: objects and states keep their initial state, and a
-        command whose reaction is gone has failed.
+        What the rules no longer know is left out: objects keep their initial state, and a command
+        whose reaction is gone has failed.
         """
         for name, value in state.objects.items():
             if name in self._objects and value in self._rules.objects[name].states:
@@ -282,8 +282,8 @@ class Room:
     def compare(self, shown: Mapping[str, str]) -> tuple[Difference, ...]:
         """Where what a renderer shows is not what the room holds; changes nothing.
 
-        The effect of the command that is being carried out is no difference: the renderer may be done
-        with it and not have said so yet.
+        The effect of the command that is being carried out is no difference: the renderer may be
+        done with it and not have said so yet.
         """
         effects = self._running.reaction.effects if self._running is not None else ()
         ahead = {effect.object: effect.state for effect in effects}

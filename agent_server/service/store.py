@@ -6,7 +6,6 @@ written is there, and after a power failure no command would be worth starting a
 """
 
 import logging
-import os
 from pathlib import Path
 from typing import Protocol
 
@@ -125,7 +124,7 @@ class FolderStore:
         fresh = path.with_name(f"{path.name}.new")
         try:
             fresh.write_bytes(self._encoder.encode(saved))
-            os.replace(fresh, path)
+            fresh.replace(path)
         except OSError as error:
             log.error(
                 "session %s is not remembered over a restart: %s: %s",

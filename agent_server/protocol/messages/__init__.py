@@ -99,6 +99,10 @@ PackedServerMessage = _FromServer | PackedPoseStreamMessage
 """What a server sends in the MessagePack coding."""
 
 __all__ = [
+    "PROTOCOL",
+    "PROTOCOL_MAJOR",
+    "SUBPROTOCOL_JSON",
+    "SUBPROTOCOL_MSGPACK",
     "AckMessage",
     "AckStatus",
     "AckTelemetry",
@@ -132,8 +136,6 @@ __all__ = [
     "Missed",
     "ModelInfo",
     "Nanoseconds",
-    "PROTOCOL",
-    "PROTOCOL_MAJOR",
     "PackedClientMessage",
     "PackedFacePoints",
     "PackedPoseStreamMessage",
@@ -146,8 +148,6 @@ __all__ = [
     "PoseStreamMessage",
     "QualityBody",
     "Role",
-    "SUBPROTOCOL_JSON",
-    "SUBPROTOCOL_MSGPACK",
     "SceneBody",
     "SceneEvent",
     "SceneState",

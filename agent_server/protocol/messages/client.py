@@ -79,8 +79,8 @@ class Hello(Message, frozen=True, tag="hello"):
     face: Annotated[
         FaceKind,
         told(
-            "Sensors: `expected` when a face or affect follows, `none` for a headset that hides the "
-            "face, `gaze` for one that tells where the person looks."
+            "Sensors: `expected` when a face or affect follows, `none` for a headset that hides "
+            "the face, `gaze` for one that tells where the person looks."
         ),
     ] = "expected"
     mirror: Annotated[bool, told("Renderers: get commands, and send no acks.")] = False
@@ -167,8 +167,8 @@ class FacePoints(Message, frozen=True, tag="face"):
     points: Annotated[
         list[list[Pixels]],
         told(
-            "x to the right and y down of every point, in pixels of the image; a mesh has the depth "
-            "too, in the same unit, smaller towards the camera.",
+            "x to the right and y down of every point, in pixels of the image; a mesh has the "
+            "depth too, in the same unit, smaller towards the camera.",
             max_length=478,
         ),
     ]

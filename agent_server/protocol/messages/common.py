@@ -6,7 +6,7 @@ from agent_server.protocol.messages.fields import Message, Nanoseconds, told
 
 
 class Ping(Message, frozen=True, tag="ping"):
-    """Asks for a pong; it shows that the other side is there, how far away, and what its clock says."""
+    """Asks for a pong, which shows that the other side is there, and what its clock says."""
 
     sent_ns: Annotated[Nanoseconds, told("The asking side's own monotonic clock.")]
 

@@ -2,15 +2,11 @@
 
 from typing import Annotated
 
-from msgspec import Meta
-
 from agent_server.protocol.messages.fields import (
     COUNT,
     ONE,
-    UNIT,
     Authority,
     CommandId,
-    Coordinate,
     Count,
     Epoch,
     Label,
@@ -24,7 +20,6 @@ from agent_server.protocol.messages.fields import (
     Role,
     Seconds,
     Sha256,
-    Text,
     Version,
     told,
 )

@@ -72,7 +72,7 @@ def test_the_core_log_is_one_object_of_several_kinds(write: Callable[[str], Path
         "tick",
         "window",
     ]
-    assert len(core["oneOf"]) == 6
+    assert len(core["oneOf"]) == 7
 
 
 def test_every_record_fits_its_schema(write: Callable[[str], Path]) -> None:

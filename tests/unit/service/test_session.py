@@ -103,7 +103,7 @@ async def test_a_renderer_that_comes_back_gets_the_command_that_is_being_carried
         assert sent_again.age_ms == (r.session._context.now() - command.issued_ns) // 1_000_000 > 0
         assert msgspec.structs.replace(sent_again, age_ms=0) == command
         r.session.receive(again, m.AckMessage(command.id, "done"))
-        assert r.session.scene().objects["hifi"] == "low"
+        assert r.session.delivery.scene().objects["hifi"] == "low"
         r.session.leave(again, for_good=True)
         assert await posted(r.join("renderer"), m.CommandMessage) == []
 
