@@ -223,9 +223,11 @@ class ServerSettings(_Section, frozen=True):
         max_image_bytes: ... but for an image, which may have this many.
         max_errors: Bad messages that a connection may have open; good ones pay them back.
         hello_timeout_s: A client that has not said hello by then is sent away.
-        heartbeat_s: How often a client ought to ping.
+        heartbeat_s: How often either side pings.
         command_queue: Commands that may wait for a slow renderer.
         session_linger_s: A session without connections is kept this long.
+        resume_s: A renderer whose connection broke keeps its place this long.
+        state: Folder in which sessions are remembered over a restart; None keeps them in memory.
     """
 
     host: str = "127.0.0.1"
@@ -235,9 +237,11 @@ class ServerSettings(_Section, frozen=True):
     max_image_bytes: int = 512 * 1024
     max_errors: int = 20
     hello_timeout_s: float = 10.0
-    heartbeat_s: float = 5.0
+    heartbeat_s: float = 2.0
     command_queue: int = 64
     session_linger_s: float = 60.0
+    resume_s: float = 10.0
+    state: str | None = None
 
     def __post_init__(self) -> None:
         _check_finite(self)
@@ -250,7 +254,36 @@ class ServerSettings(_Section, frozen=True):
         for name in ("max_sessions", "max_errors", "hello_timeout_s", "heartbeat_s"):
             _require(getattr(self, name) > 0, f"{name} must be positive")
         _require(self.command_queue >= 1, "command_queue must be at least 1")
-        _require(self.session_linger_s >= 0, "session_linger_s must not be negative")
+        for name in ("session_linger_s", "resume_s"):
+            _require(getattr(self, name) >= 0, f"{name} must not be negative")
+        _require(self.state != "", "state must name a folder")
+
+
+class VmcSettings(_Section, frozen=True):
+    """Whether and where an avatar program gets a body to show, by the VMC protocol.
+
+    Attributes:
+        enabled: Whether anything is sent.
+        host: Address of the program, best as a number. What is sent is personal data, not
+            encrypted.
+        port: UDP port at which it listens.
+        show: The body as it is ``observed``, or as it is ``predicted`` to be a moment later.
+        lead_ms: How much later, where it is predicted.
+        session: Which session is shown; empty takes the first that has a body, until it has
+            none any more.
+    """
+
+    enabled: bool = False
+    host: str = "127.0.0.1"
+    port: int = 39539
+    show: Literal["observed", "predicted"] = "observed"
+    lead_ms: int = 500
+    session: str = ""
+
+    def __post_init__(self) -> None:
+        _require(self.host != "", "host must name the machine of the avatar program")
+        _require(1 <= self.port <= 65535, "port must lie in 1..65535")
+        _require(40 <= self.lead_ms <= 1000, "lead_ms must lie in 40..1000")
 
 
 class Settings(_Section, frozen=True):
@@ -268,6 +301,7 @@ class Settings(_Section, frozen=True):
     decide: DecideSettings = DecideSettings()
     models: ModelSettings = ModelSettings()
     server: ServerSettings = ServerSettings()
+    vmc: VmcSettings = VmcSettings()
     rules: str | None = None
 
 

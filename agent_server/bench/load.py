@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from agent_server import __version__
 from agent_server.bench.figures import percentiles, resident_mb
 from agent_server.bench.stream import recorded_frames
+from agent_server.client.once import Client, join
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import AgentServerError
 from agent_server.protocol import messages as m
 from agent_server.protocol.convert import skeleton_to_message
-from agent_server.transports.client import Client, join
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,17 +17,20 @@ from rich.console import Console
 from agent_server import __version__, assets
 from agent_server.cli.options import PortOption, run, settings_with
 from agent_server.cli.story import Story
+from agent_server.client.link import Options
+from agent_server.client.once import Client, ConnectionFailed, join, send_paced
+from agent_server.client.renderer import Renderer
+from agent_server.client.timed import TimedRenderer
 from agent_server.domain.inputs import SensorInput
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import RecordingError
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.service.hub import Hub
-from agent_server.transports.client import Client, ConnectionFailed, join, send_paced
-from agent_server.transports.renderer import TimedRenderer
 from agent_server.transports.server import address, bind, build_hub, load_models, serving
 
 SESSION = "demo"
+CLIENT = "agent-server-demo"
 FAREWELL_S = 0.5
 PAUSE_NS = 3 * NS_PER_S
 """Between two rounds the person is away, long enough to count as gone."""
@@ -64,7 +67,7 @@ async def _demo(
             await asyncio.to_thread(webbrowser.open, page)
         async with (
             join(base, SESSION, "monitor", hello=_hello(topics=["decision"])) as monitor,
-            join(base, SESSION, "renderer", hello=_hello()) as connection,
+            Renderer(Options(base, SESSION, CLIENT)) as connection,
         ):
             renderer = TimedRenderer(connection)
             acting = asyncio.create_task(_act(renderer))
@@ -89,7 +92,7 @@ def _raise_first(results: Iterable[BaseException | None]) -> None:
 
 
 def _hello(topics: list[m.Topic] | None = None) -> m.Hello:
-    return m.Hello(m.PROTOCOL, "agent-server-demo", __version__, topics=topics)
+    return m.Hello(m.PROTOCOL, CLIENT, __version__, topics=topics)
 
 
 async def _play(url: str, recording: Recording, rounds: int, renderer: TimedRenderer) -> None:
@@ -111,8 +114,7 @@ async def _play(url: str, recording: Recording, rounds: int, renderer: TimedRend
                 1.0,
             )
             await asyncio.sleep(PAUSE_NS / NS_PER_S)
-            with suppress(ConnectionFailed):
-                await renderer.restore()
+            await renderer.restore()
             played += 1
 
 

@@ -24,6 +24,7 @@ from agent_server.cli.options import (
     settings_with,
 )
 from agent_server.cli.story import Story
+from agent_server.client.once import Client, join, send_paced
 from agent_server.config import Settings
 from agent_server.domain.inputs import SensorInput
 from agent_server.domain.stamp import NS_PER_S
@@ -35,7 +36,6 @@ from agent_server.recording.records import SensorChanged
 from agent_server.recording.topics import CORE
 from agent_server.service.core import Core
 from agent_server.service.replay import replay as replay_recording
-from agent_server.transports.client import Client, join, send_paced
 from agent_server.transports.server import load_models, load_room
 
 log = logging.getLogger(__name__)

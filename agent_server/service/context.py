@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from agent_server.clock import Clock
 from agent_server.service.audience import Audience
+from agent_server.service.avatar import Avatar
 from agent_server.service.core import Core
 from agent_server.service.journal import Journal
 from agent_server.service.seats import Seats
@@ -20,6 +21,7 @@ class Context:
         core: Its stages and its room.
         clock: Where to read the time.
         journal: Where everything that enters and leaves the core is written down.
+        avatar: Where its person is shown.
         audience: Its clients.
         seats: Who of them may speak for what.
         timeline: Its time.
@@ -30,6 +32,7 @@ class Context:
     core: Core
     clock: Clock
     journal: Journal
+    avatar: Avatar
     audience: Audience = field(default_factory=Audience)
     seats: Seats = field(default_factory=Seats)
     timeline: Timeline = field(default_factory=Timeline)

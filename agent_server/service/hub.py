@@ -14,6 +14,7 @@ from agent_server.protocol import messages as m
 from agent_server.protocol.codes import CLOSE_GOING_AWAY, CLOSE_INTERNAL
 from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Client
+from agent_server.service.avatar import Avatar, NoAvatar
 from agent_server.service.camera import Eyes
 from agent_server.service.journal import Journal, NoJournal
 from agent_server.service.models import Models
@@ -42,6 +43,7 @@ class Hub:
         clock: Where to read the time.
         open_journal: Where a session of a given id is written down; None writes nothing.
         store: Where sessions are remembered over a restart; None remembers them in memory.
+        avatar: Where persons are shown; None shows nobody. It is closed with the hub.
     """
 
     def __init__(
@@ -52,6 +54,7 @@ class Hub:
         clock: Clock,
         open_journal: Callable[[str], Journal] | None = None,
         store: SessionStore | None = None,
+        avatar: Avatar | None = None,
     ) -> None:
         self.settings = settings
         self.clock = clock
@@ -59,6 +62,7 @@ class Hub:
         self._rules = rules
         self._open_journal = open_journal
         self._store = store or MemoryStore()
+        self._avatar = avatar or NoAvatar()
         self._worker = InferenceWorker(models)
         self._eyes = None if models.face is None else Eyes(models.face)
         self._sessions: dict[str, Session] = {}
@@ -86,6 +90,7 @@ class Hub:
                 yield
             finally:
                 self.stop()
+                self._avatar.close()
                 worker.cancel()
                 if self._eyes is not None:
                     self._eyes.close()
@@ -182,6 +187,7 @@ class Hub:
             ),
             NoJournal() if self._open_journal is None else self._open_journal(session_id),
             self._store,
+            self._avatar,
             self._eyes,
         )
         self._sessions[session_id] = session

@@ -107,7 +107,10 @@ class Sensing:
         context.journal.append_input(frame)
         self._enqueue(jobs, arrival_ns)
         latest = perception.latest
-        if latest is not None and latest is not shown and context.audience.wants("pose"):
+        if latest is None or latest is shown:
+            return
+        context.avatar.show_body(context.id, latest)
+        if context.audience.wants("pose"):
             context.audience.show("pose", convert.pose_message(latest))
 
     def _take_affect(self, client: Client, message: m.Affect, arrival_ns: int) -> None:
@@ -162,6 +165,7 @@ class Sensing:
             return
         context.counters["faces"] += 1
         context.journal.append_input(face)
+        context.avatar.show_face(context.id, face)
         context.audience.show("affect", convert.affect_telemetry(sample))
         self._show_calibration(calibrated, client)
 

@@ -17,6 +17,7 @@ from agent_server.protocol import messages as m
 from agent_server.recording.records import BodyGone, Tick, WindowDone, WindowSkipped
 from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Client
+from agent_server.service.avatar import Avatar
 from agent_server.service.camera import Camera, Eyes
 from agent_server.service.context import Context
 from agent_server.service.core import Core, Job, PendingWindow
@@ -66,6 +67,7 @@ class Session:
         opening: How it begins.
         journal: Where the session is recorded.
         store: Where it is remembered over a restart.
+        avatar: Where the person is shown.
         eyes: What finds faces in images, or None where images are not taken.
     """
 
@@ -79,14 +81,16 @@ class Session:
         opening: Opening,
         journal: Journal,
         store: SessionStore,
+        avatar: Avatar,
         eyes: Eyes | None = None,
     ) -> None:
         self.id = session
         self._worker = worker
         self._clock = clock
         self._journal = journal
+        self._avatar = avatar
         self._core = Core(session, settings, rules, worker.models)
-        self._context = Context(session, self._core, clock, journal)
+        self._context = Context(session, self._core, clock, journal, avatar)
         self.audience = self._context.audience
         self.counters = self._context.counters
         self.delivery = Delivery(
@@ -168,6 +172,7 @@ class Session:
         """Send all clients away and end the recording."""
         for client in self.audience.clients:
             client.outbox.close(code, reason)
+        self._avatar.forget(self.id)
         self._journal.close()
 
     async def _work(self) -> None:
@@ -183,6 +188,7 @@ class Session:
 
     def _lose_body(self, lost: BodyLost) -> None:
         self.counters["bodies_lost"] += 1
+        self._avatar.forget(self.id)
         self._journal.append_core(BodyGone(lost.stamp_ns, lost.body_id))
         self.delivery.deliver(self._core.lose_body(lost), lost.stamp_ns)
 
@@ -205,6 +211,7 @@ class Session:
         end_ns = self._clock.now_ns()
         # The command leaves first; what monitors and the recording get can wait.
         self.delivery.deliver(result.commands, window.end_ns)
+        self._avatar.show_forecast(self.id, inference.forecast, window.end_ns)
         self.counters["decisions"] += 1
         failure = inference.forecast.failure
         self.counters["predictor_failures"] += failure is not None

@@ -26,6 +26,7 @@ from agent_server.service.hub import Hub
 from agent_server.service.models import FaceNetworks, Models
 from agent_server.service.recorder import recorder
 from agent_server.service.store import FolderStore
+from agent_server.service.vmc import open_avatar
 from agent_server.transports.app import create_app
 
 GOODBYE_S = 0.1
@@ -69,7 +70,8 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
 
     Raises:
         RuleError: If the rule file is wrong.
-        ConfigError: If the folder of sessions cannot be written.
+        ConfigError: If the folder of sessions cannot be written, or the avatar program's host has
+            no address.
     """
     clock = SystemClock()
     open_journal = None
@@ -84,7 +86,9 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
         )
     state = settings.server.state
     store = None if state is None else FolderStore(Path(state), clock.wall_ns())
-    return Hub(settings, load_room(settings, models), models, clock, open_journal, store)
+    room = load_room(settings, models)
+    avatar = open_avatar(settings.vmc)
+    return Hub(settings, room, models, clock, open_journal, store, avatar)
 
 
 def load_room(settings: Settings, models: Models) -> Rules:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from agent_server import assets
+from agent_server.client.once import send_paced
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.face.image import decode_jpeg
 from agent_server.face.tracker import FaceTracker
@@ -13,7 +14,6 @@ from agent_server.inference.runtime import OnnxFaceNetwork
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import open_recording
 from agent_server.service.journal import NoJournal
-from agent_server.transports.client import send_paced
 from agent_server.transports.server import load_models
 from tests.browser.test_page import COLD
 from tests.support.browser import browsing, needs_browser, until

@@ -3,8 +3,8 @@
 import asyncio
 from pathlib import Path
 
+from agent_server.client.once import send_paced
 from agent_server.recording.reader import open_recording
-from agent_server.transports.client import send_paced
 from agent_server.transports.server import load_models
 from tests.support.browser import browsing, needs_browser, until
 from tests.support.live import live

@@ -11,10 +11,10 @@ import pytest
 
 from agent_server.cli import gestures as module
 from agent_server.cli.main import main
+from agent_server.client.once import ConnectionFailed, join, send_paced
 from agent_server.recording.reader import open_recording
 from agent_server.synthetic.scenario import Part, Scenario, play
 from agent_server.synthetic.sensors import KINECT_V2
-from agent_server.transports.client import ConnectionFailed, join, send_paced
 
 NS = 1_000_000_000
 SPEED = 10.0

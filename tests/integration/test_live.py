@@ -8,6 +8,10 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
+from agent_server.client.link import Options
+from agent_server.client.once import ConnectionFailed, join, send_paced
+from agent_server.client.renderer import Renderer
+from agent_server.client.timed import TimedRenderer
 from agent_server.config import GateSettings, ServerSettings, Settings
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS
@@ -21,8 +25,6 @@ from agent_server.protocol.codes import (
     CLOSE_WRONG_VERSION,
 )
 from agent_server.protocol.convert import skeleton_to_message
-from agent_server.transports.client import ConnectionFailed, join, send_paced
-from agent_server.transports.renderer import TimedRenderer
 from tests.support.bodies import stream
 from tests.support.live import all_decisions, live, next_of
 from tests.support.models import fake_models
@@ -307,7 +309,7 @@ async def test_a_renderer_without_a_picture_carries_commands_out_and_restores_th
     async with (
         live(settings=OPEN_GATE) as server,
         server.join("monitor") as monitor,
-        server.join("renderer") as connection,
+        Renderer(Options(server.url, "s")) as connection,
         server.join("sensor", hello=HEADSET) as sensor,
     ):
         renderer = TimedRenderer(connection)

@@ -7,6 +7,7 @@ from functools import partial
 import msgspec
 import pytest
 
+from agent_server.client.once import send_paced
 from agent_server.clock import SystemClock
 from agent_server.config import GateSettings, Settings
 from agent_server.domain.affect import AffectSample
@@ -20,7 +21,6 @@ from agent_server.scene.rules import default_rules
 from agent_server.service.core import Core
 from agent_server.service.recorder import Recorder, recorder
 from agent_server.service.replay import log_line, replay
-from agent_server.transports.client import send_paced
 from tests.support.bodies import frame, stream
 from tests.support.live import all_decisions, live
 from tests.support.models import fake_models

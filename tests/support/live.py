@@ -11,7 +11,7 @@ from agent_server.config import Settings
 from agent_server.protocol import messages as m
 from agent_server.scene.rules import default_rules
 from agent_server.service.hub import Hub
-from agent_server.transports.client import join
+from agent_server.client.once import join
 from agent_server.transports.server import address, bind, serving
 from tests.support.models import fake_models
 

@@ -53,6 +53,10 @@ def test_the_thesis_grid_has_no_overlap(tmp_path):
         ("[server]\nsession_linger_s = -1.0\n", "session_linger_s"),
         ("[models]\nclassifier = ''\n", "classifier"),
         ("[models]\ngate = 'x'\n", "gate"),
+        ("[vmc]\nhost = ''\n", "host"),
+        ("[vmc]\nport = 0\n", "port"),
+        ("[vmc]\nlead_ms = 2000\n", "lead_ms"),
+        ("[vmc]\nshow = 'dreamt'\n", "dreamt"),
         ("[window\n", "TOML"),
     ],
 )

@@ -13,6 +13,7 @@ from agent_server.protocol import messages as m
 from agent_server.protocol.convert import skeleton_to_message
 from agent_server.scene.rules import default_rules
 from agent_server.service.audience import Client
+from agent_server.service.avatar import NoAvatar
 from agent_server.service.journal import NoJournal
 from agent_server.service.mailbox import Outbox
 from agent_server.service.session import Opening, Session
@@ -41,6 +42,7 @@ class Room:
             Opening("ledger", "epoch"),
             NoJournal(),
             MemoryStore(),
+            NoAvatar(),
         )
 
     def join(self, role, **hello):

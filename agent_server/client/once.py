@@ -1,4 +1,4 @@
-"""A client of the server: says hello, sends and receives messages. For tools, tests and demos."""
+"""One connection and no more: says hello, sends and receives messages. For tools and tests."""
 
 import asyncio
 from collections.abc import AsyncIterator, Iterable
@@ -59,6 +59,13 @@ class Client:
             raise ConnectionFailed(f"the server closed the connection: {error}") from error
 
 
+def socket_address(url: str, session: str, role: m.Role) -> str:
+    """Where a role of a session connects; the server's address may be ``http`` or ``ws``."""
+    base = url.rstrip("/")
+    base = base.replace("http", "ws", 1) if base.startswith("http") else base
+    return f"{base}/v1/sessions/{session}/{role}"
+
+
 @asynccontextmanager
 async def join(
     url: str,
@@ -82,8 +89,7 @@ async def join(
     """
     codec = CODECS[subprotocol]
     hello = hello or m.Hello(m.PROTOCOL, "agent-server-client", __version__)
-    base = url.rstrip("/").replace("http", "ws", 1) if url.startswith("http") else url.rstrip("/")
-    address = f"{base}/v1/sessions/{session}/{role}"
+    address = socket_address(url, session, role)
     try:
         socket = await connect(
             address,
