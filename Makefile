@@ -32,6 +32,7 @@ lint: $(STAMP)
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/agent-server schema --check
 
 bench: $(STAMP)
 	$(BIN)/agent-server bench ingest --json

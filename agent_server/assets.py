@@ -25,6 +25,11 @@ def page() -> Path:
     return _choose("page", _PACKAGE / "web" / "dist")
 
 
+def checkout() -> Path | None:
+    """Root of the checkout that this runs from, or None for an installed wheel."""
+    return _CHECKOUT if (_CHECKOUT / "pyproject.toml").is_file() else None
+
+
 def demo_recording() -> Path:
     """The recording that the demo plays."""
     return _choose("streams/demo.mcap", _CHECKOUT / "recorded_streams" / "demo.mcap")

@@ -14,6 +14,7 @@ from agent_server.cli.demo import demo
 from agent_server.cli.gestures import gestures
 from agent_server.cli.recover import recover
 from agent_server.cli.replay import replay
+from agent_server.cli.schema import schema
 from agent_server.cli.serve import serve
 from agent_server.errors import AgentServerError
 
@@ -24,7 +25,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, serve, replay, convert, recover):
+for command in (demo, serve, replay, convert, recover, schema):
     app.command()(command)
 app.add_typer(gestures)
 app.add_typer(bench)

@@ -17,6 +17,7 @@ from agent_server.protocol.codes import (
     CLOSE_TOO_MANY_ERRORS,
     CLOSE_WRONG_VERSION,
 )
+from agent_server.protocol.roles import CLIENT_SENDS
 
 HEARTBEAT = "heartbeat"
 """Capability of clients that answer pings."""
@@ -39,22 +40,6 @@ _NEXT = {
     State.OPENING: {State.OPEN, State.CLOSED},
     State.OPEN: {State.CLOSED},
     State.CLOSED: set[State](),
-}
-
-_ALLOWED: dict[m.Role, tuple[type[m.Message], ...]] = {
-    "sensor": (
-        m.Skeleton,
-        m.PackedSkeleton,
-        m.FacePoints,
-        m.PackedFacePoints,
-        m.Blendshapes,
-        m.Image,
-        m.Affect,
-        m.Gaze,
-        m.Calibrate,
-    ),
-    "renderer": (m.AckMessage, m.SceneEvent),
-    "monitor": (),
 }
 
 
@@ -131,7 +116,7 @@ class ServerConnection:
         self._max_image_bytes = max_image_bytes
         self._max_errors = max_errors
         self._errors = 0.0
-        self._allowed = _ALLOWED[role]
+        self._allowed = CLIENT_SENDS[role]
         self._heartbeat_ns = heartbeat_ns
         self._heard_ns = 0
         self._answers_pings = False

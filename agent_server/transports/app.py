@@ -12,6 +12,8 @@ from starlette.types import Scope
 
 from agent_server import __version__, assets
 from agent_server.inference.manifest import MANIFEST_FILE, MODEL_FILE
+from agent_server.protocol.schema import reference
+from agent_server.protocol.schema.json_schema import asyncapi
 from agent_server.service.hub import Hub
 from agent_server.transports.websocket import websocket_router
 
@@ -21,6 +23,8 @@ _NO_PAGE = """<!doctype html><meta charset="utf-8"><title>agent-server</title>
 
 PAGE_POLICY = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'"
 """Nothing from elsewhere; WebAssembly may run, which the face networks need."""
+DOCS_POLICY = "default-src 'none'; style-src 'unsafe-inline'"
+"""The reference runs nothing and asks for nothing."""
 PAGE_NETWORKS = ("face_detector", "face_mesh")
 """Bundles that the page runs."""
 FOR_GOOD = "public, max-age=31536000, immutable"
@@ -75,6 +79,16 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
         """Whether sessions are admitted; models were checked before the server listened."""
         status = 200 if hub.is_running else 503
         return JSONResponse({"ready": hub.is_running, "models": hub.models.hashes}, status)
+
+    @app.get("/asyncapi.json")
+    async def asyncapi_document() -> JSONResponse:
+        """The protocol as an AsyncAPI 3 document."""
+        return JSONResponse(asyncapi())
+
+    @app.get("/protocol")
+    async def protocol_page() -> HTMLResponse:
+        """The reference of all messages and codes, for a browser."""
+        return HTMLResponse(reference.page(), headers={"Content-Security-Policy": DOCS_POLICY})
 
     @app.get("/v1/sessions")
     async def sessions() -> dict[str, list[dict[str, object]]]:
