@@ -2,15 +2,18 @@
 
 import asyncio
 from contextlib import asynccontextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import msgspec
 
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
+from agent_server.domain.scene import Authority
 from agent_server.protocol import messages as m
 from agent_server.scene.rules import default_rules
 from agent_server.service.hub import Hub
+from agent_server.service.store import FolderStore
 from agent_server.client.once import join
 from agent_server.transports.server import address, bind, serving
 from tests.support.models import fake_models
@@ -28,14 +31,23 @@ class Live:
 
 
 @asynccontextmanager
-async def live(models=None, settings=None, open_journal=None):
-    """Serve on a free port while the context lasts."""
+async def live(models=None, settings=None, open_journal=None, *, port=0, authority=None, hub=None):
+    """Serve on a free port, or a given one, while the context lasts.
+
+    ``authority`` says of objects by name whose word holds; ``hub`` is one of the test's own.
+    """
     settings = settings or Settings()
-    server = msgspec.structs.replace(settings.server, port=0)
+    server = msgspec.structs.replace(settings.server, port=port)
     settings = msgspec.structs.replace(settings, server=server)
     models = models or fake_models()
     rules = default_rules(models.classifier.labels)
-    hub = Hub(settings, rules, models, SystemClock(), open_journal)
+    for name, side in (authority or {}).items():
+        rules.objects[name] = replace(rules.objects[name], authority=Authority(side))
+    if hub is None:
+        state = settings.server.state
+        clock = SystemClock()
+        store = None if state is None else FolderStore(Path(state), clock.wall_ns())
+        hub = Hub(settings, rules, models, clock, open_journal, store)
     listener = bind(settings)
     async with serving(hub, listener):
         yield Live(address(listener), hub)

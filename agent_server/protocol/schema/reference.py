@@ -97,7 +97,11 @@ def page() -> str:
                 body.append("<tr>" + "".join(f"<td>{_marked(cell)}</td>" for cell in row) + "</tr>")
             body.append("</tbody></table></div>")
     template = Template(resources.files(__package__).joinpath("page.html").read_text("utf-8"))
-    return template.substitute(title=f"agent-server protocol {m.PROTOCOL}", body="\n".join(body))
+    return template.substitute(
+        title=f"agent-server protocol {m.PROTOCOL}",
+        contents="\n".join(contents),
+        body="\n".join(body),
+    )
 
 
 def _groups() -> Iterator[tuple[str, str, tuple[str, ...]]]:
