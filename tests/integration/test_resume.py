@@ -35,8 +35,7 @@ def raw_hello(**fields):
 async def gesture(server):
     """Somebody covers their ears, and does not leave."""
     async with Sensor(Options(server.url, "s", hello={"face": "none"})) as sensor:
-        while sensor.link.phase != "live":
-            await asyncio.sleep(0.01)
+        await until(lambda: sensor.link.phase == "live")
         for frame in GESTURE:
             assert await sensor.send(frame)
             await asyncio.sleep(0.001)
@@ -54,9 +53,7 @@ async def event_of(events, kind, within_s=5.0):
 async def cut(renderer):
     """Break the connection without a goodbye."""
     renderer.link._socket.transport.abort()
-    async with asyncio.timeout(5):
-        while renderer.link.phase == "live":
-            await asyncio.sleep(0.005)
+    await until(lambda: renderer.link.phase != "live")
 
 
 @asynccontextmanager
@@ -82,7 +79,7 @@ async def ends_of(server):
 
 async def until(condition, within_s=5.0):
     async with asyncio.timeout(within_s):
-        while not condition():
+        while not condition():  # noqa: ASYNC110 - a test looks from outside
             await asyncio.sleep(0.01)
 
 
@@ -178,13 +175,12 @@ async def test_a_connection_takes_the_place_of_an_earlier_one_of_the_same_client
 
 
 async def test_a_client_that_was_replaced_stays_away_and_says_so():
-    async with live(settings=settings()) as server:
-        async with Renderer(Options(server.url, "s")) as first:
-            await event_of(aiter(first), m.Welcome)
-            async with Renderer(Options(server.url, "s", take_over=True)) as second:
-                await event_of(aiter(second), m.Welcome)
-                with pytest.raises(ConnectionFailed, match="took over"):
-                    await event_of(aiter(first), m.Pong)
+    async with live(settings=settings()) as server, Renderer(Options(server.url, "s")) as first:
+        await event_of(aiter(first), m.Welcome)
+        async with Renderer(Options(server.url, "s", take_over=True)) as second:
+            await event_of(aiter(second), m.Welcome)
+            with pytest.raises(ConnectionFailed, match="took over"):
+                await event_of(aiter(first), m.Pong)
 
 
 async def test_a_restarted_server_goes_on_with_the_room_and_the_open_command(tmp_path):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import msgspec
 
+from agent_server.client.once import join
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
 from agent_server.domain.scene import Authority
@@ -14,7 +15,6 @@ from agent_server.protocol import messages as m
 from agent_server.scene.rules import default_rules
 from agent_server.service.hub import Hub
 from agent_server.service.store import FolderStore
-from agent_server.client.once import join
 from agent_server.transports.server import address, bind, serving
 from tests.support.models import fake_models
 
