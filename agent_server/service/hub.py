@@ -224,4 +224,5 @@ class Hub:
         self._endings.pop(session_id, None)
         session.close(code, reason)
         self._tasks.pop(session_id).cancel()
+        self._store.release(session_id)
         log.info("session %s: closed: %s", session_id, reason)

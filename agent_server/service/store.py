@@ -6,6 +6,7 @@ written is there, and after a power failure no command would be worth starting a
 """
 
 import logging
+from io import FileIO
 from pathlib import Path
 from typing import Protocol
 
@@ -18,7 +19,9 @@ from agent_server.errors import ConfigError
 log = logging.getLogger(__name__)
 
 FORMAT = 1
-SUFFIX = ".session.json"
+SUFFIX = ".session.jsonl"
+LARGEST_BYTES = 256 * 1024
+"""A file that has grown beyond this is begun anew with its last state."""
 KEPT_NS = 24 * 3600 * NS_PER_S
 """Who does not come back within a day begins anew."""
 
@@ -52,6 +55,10 @@ class SessionStore(Protocol):
         """Write a session down. A store that fails says so, and the session goes on."""
         ...
 
+    def release(self, session: str) -> None:
+        """The session is closed; it may be opened again."""
+        ...
+
     def forget(self, session: str) -> None:
         """The session has ended for good."""
         ...
@@ -71,13 +78,16 @@ class MemoryStore:
         """Write a session down."""
         self._saved[saved.session] = saved
 
+    def release(self, session: str) -> None:
+        """Hold nothing open; there is nothing."""
+
     def forget(self, session: str) -> None:
         """The session has ended for good."""
         self._saved.pop(session, None)
 
 
 class FolderStore:
-    """Remembers each session in a file, which is replaced as a whole.
+    """Remembers each session in a file, a line a state; the last whole line holds.
 
     Args:
         folder: Where; it is made if need be.
@@ -91,6 +101,7 @@ class FolderStore:
         self._folder = folder
         self._encoder = msgspec.json.Encoder()
         self._decoder = msgspec.json.Decoder(Saved)
+        self._open: dict[str, FileIO] = {}
         try:
             folder.mkdir(parents=True, exist_ok=True)
             for path in folder.glob(f"*{SUFFIX}"):
@@ -109,36 +120,67 @@ class FolderStore:
         """What was saved of a session, or None; a damaged file is as good as none, and said."""
         path = self._path(session)
         try:
-            saved = self._decoder.decode(path.read_bytes())
+            lines = path.read_bytes().splitlines()
         except FileNotFoundError:
             return None
-        except (OSError, msgspec.MsgspecError) as error:
-            log.error("session %s begins anew: %s cannot be read: %s", session, path, error)
+        except OSError as error:
+            log.error("session %s begins anew: %s: %s", session, path, error.strerror)
             return None
-        # On some disks `Lab` and `lab` are one file.
-        return saved if saved.session == session and saved.format == FORMAT else None
+        for line in reversed(lines):
+            try:
+                saved = self._decoder.decode(line)
+            except msgspec.MsgspecError:
+                continue  # the server was killed, or the disk was full, in the middle of it
+            # On some disks `Lab` and `lab` are one file.
+            if saved.session == session and saved.format == FORMAT:
+                return saved
+        log.error("session %s begins anew: %s holds no state that can be read", session, path)
+        return None
 
     def save(self, saved: Saved) -> None:
         """Write a session down."""
-        path = self._path(saved.session)
-        fresh = path.with_name(f"{path.name}.new")
+        line = self._encoder.encode(saved) + b"\n"
         try:
-            fresh.write_bytes(self._encoder.encode(saved))
-            fresh.replace(path)
+            file = self._open.get(saved.session)
+            if file is None or file.tell() > LARGEST_BYTES:
+                file = self._begin(saved.session)
+            file.write(line)
         except OSError as error:
             log.error(
                 "session %s is not remembered over a restart: %s: %s",
                 saved.session,
-                path,
+                self._path(saved.session),
                 error.strerror,
             )
 
     def forget(self, session: str) -> None:
         """The session has ended for good."""
+        self.release(session)
         try:
             self._path(session).unlink(missing_ok=True)
         except OSError as error:
             log.error("session %s: its state was not removed: %s", session, error.strerror)
+
+    def release(self, session: str) -> None:
+        """Close the session's file, and remember the session."""
+        file = self._open.pop(session, None)
+        if file is not None:
+            file.close()
+
+    def _begin(self, session: str) -> FileIO:
+        """The file for the states to come, reduced to its last one where it has grown large."""
+        self.release(session)
+        path = self._path(session)
+        if path.exists() and path.stat().st_size > LARGEST_BYTES:
+            last = self.load(session)
+            fresh = path.with_name(f"{path.name}.new")
+            fresh.write_bytes(b"" if last is None else self._encoder.encode(last) + b"\n")
+            fresh.replace(path)
+        file = FileIO(path, "a")
+        if file.tell():
+            file.write(b"\n")  # after a state that was cut off
+        self._open[session] = file
+        return file
 
     def _path(self, session: str) -> Path:
         return self._folder / f"{session}{SUFFIX}"

@@ -249,22 +249,22 @@ async def test_a_session_that_ended_is_not_remembered(tmp_path):
         async with server.join("renderer") as renderer:
             ledger = renderer.welcome.ledger
             await renderer.send(m.SceneEvent("window", "closed"))
-            await until(lambda: list(tmp_path.glob("*.session.json")))
-        await until(lambda: not list(tmp_path.glob("*.session.json")))
+            await until(lambda: list(tmp_path.glob("*.session.jsonl")))
+        await until(lambda: not list(tmp_path.glob("*.session.jsonl")))
         async with server.join("renderer") as renderer:
             assert renderer.welcome.ledger != ledger
             assert renderer.welcome.scene.objects["window"] == "open"
 
 
 async def test_a_damaged_file_costs_the_memory_and_not_the_session(tmp_path, caplog):
-    (tmp_path / "s.session.json").write_text('{"session":"s","led')
+    (tmp_path / "s.session.jsonl").write_text('{"session":"s","led')
     async with live(settings=settings(tmp_path)) as server, server.join("renderer") as renderer:
         assert renderer.welcome.sequence == 0
-    assert "s.session.json cannot be read" in caplog.text
+    assert "s.session.jsonl holds no state that can be read" in caplog.text
 
 
 def test_files_of_a_day_ago_are_removed(tmp_path):
-    old = tmp_path / "s.session.json"
+    old = tmp_path / "s.session.jsonl"
     old.write_text("{}")
     other = tmp_path / "notes.txt"
     other.write_text("mine")
