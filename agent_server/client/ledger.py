@@ -42,7 +42,7 @@ class CommandLedger:
 
     Attributes:
         ledger: Which one it is, or None before the first welcome.
-        sequence: Highest sequence that was taken, 0 before the first.
+        sequence: Highest sequence that came, 0 before the first.
     """
 
     def __init__(self) -> None:
@@ -76,6 +76,7 @@ class CommandLedger:
         if (ack := self._over.get(command.id)) is not None:
             return Taken((ack,))
         if command.age_ms >= command.ttl_ms:
+            self.sequence = max(self.sequence, command.sequence)
             return Taken((self._end(AckMessage(command.id, "failed", reason=EXPIRED)),))
         if command.sequence < self.sequence:
             return Taken((self._end(AckMessage(command.id, "failed", reason=PREEMPTED)),))
@@ -98,7 +99,7 @@ class CommandLedger:
         entry = self._find(command_id)
         if entry is None or entry.is_started:
             return False, None
-        if now_ns >= entry.expires_ns:
+        if now_ns > entry.expires_ns:
             return False, self._end(AckMessage(command_id, "failed", reason=EXPIRED))
         entry.is_started = True
         entry.ack = AckMessage(command_id, "started")

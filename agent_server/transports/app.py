@@ -25,6 +25,8 @@ PAGE_POLICY = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'"
 """Nothing from elsewhere; WebAssembly may run, which the face networks need."""
 DOCS_POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 """The reference runs nothing and asks for nothing."""
+CLIENT = "client.js"
+"""The JavaScript client; pages of other servers may import it."""
 PAGE_NETWORKS = ("face_detector", "face_mesh")
 """Bundles that the page runs."""
 FOR_GOOD = "public, max-age=31536000, immutable"
@@ -43,6 +45,10 @@ class _Page(StaticFiles):
 
     async def get_response(self, path: str, scope: Scope) -> Response:
         """A file; WebAssembly is built compressed, and goes out as it is."""
+        if path == CLIENT:
+            response = await super().get_response(path, scope)
+            response.headers["Access-Control-Allow-Origin"] = "*"
+            return response
         if not path.endswith(".wasm"):
             return await super().get_response(path, scope)
         response = await super().get_response(f"{path}.gz", scope)

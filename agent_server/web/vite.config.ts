@@ -1,5 +1,5 @@
 import { readFileSync } from "node:fs";
-import { defineConfig } from "vite";
+import { defineConfig, type BuildEnvironmentOptions } from "vite";
 
 /** The package's version is the page's: they ship together. */
 const version = /^__version__ = "(.+)"$/m.exec(
@@ -10,17 +10,25 @@ if (version === undefined) throw new Error("agent_server/__init__.py has no __ve
 /** Where `npm run dev` finds a running server. */
 const server = process.env["AGENT_SERVER_URL"] ?? "http://127.0.0.1:8765";
 
-export default defineConfig({
+const page: BuildEnvironmentOptions = {
+  // An inlined image would need `data:` in the server's content security policy.
+  assetsInlineLimit: 0,
+  chunkSizeWarningLimit: 800,
+  license: { fileName: "licenses.md" },
+};
+
+/** One file beside the page, for pages of others; it shares nothing with the page's own bundle. */
+const client: BuildEnvironmentOptions = {
+  lib: { entry: "src/client.ts", formats: ["es"], fileName: () => "client.js" },
+  emptyOutDir: false,
+  copyPublicDir: false,
+};
+
+export default defineConfig(({ mode }) => ({
   // Relative addresses, so that the page works under any path prefix.
   base: "./",
   define: { __PAGE_VERSION__: JSON.stringify(version) },
-  build: {
-    target: "es2023",
-    // An inlined image would need `data:` in the server's content security policy.
-    assetsInlineLimit: 0,
-    chunkSizeWarningLimit: 800,
-    license: { fileName: "licenses.md" },
-  },
+  build: { target: "es2023", ...(mode === "client" ? client : page) },
   worker: { format: "es" },
   server: { proxy: { "/v1": { target: server, ws: true } } },
-});
+}));

@@ -13,6 +13,7 @@ import { Notice } from "./panels/notice.ts";
 import { RoomPanel } from "./panels/room.ts";
 import { Counters, StatusStrip } from "./panels/status.ts";
 import type { Place } from "./place.ts";
+import { jsonCodec } from "./protocol/codec.ts";
 import type { Row } from "./state/log.ts";
 import { Store } from "./state/store.ts";
 import { summaryOf, type Summary } from "./state/summary.ts";
@@ -43,7 +44,7 @@ export class App {
   readonly #room = new RoomPanel(byId("room"), byId("modes"));
   readonly #log = new LogPanel(byId("rows"), byId("announcer"), (row) => this.#inspect(row));
   readonly #inspector = new Inspector(byId("inspector"), () => this.#closeInspector());
-  readonly #notice = new Notice(byId("notice"), () => this.#connection.retryNow());
+  readonly #notice = new Notice(byId("notice"), () => this.#connectAgain());
   readonly #spoken = byId("spoken");
   #directory: Directory = { kind: "unknown" };
   #opened: number | null = null;
@@ -69,12 +70,16 @@ export class App {
     );
     this.#cameraPanel.connect(this.#camera);
     this.#cameraPanel.render(this.#camera, browserHost.now());
+    const { monitorUrl: url, session } = place;
     this.#connection = new Connection(
-      place.monitorUrl,
-      client,
+      { url, session, role: "monitor", client, codec: jsonCodec },
       browserHost,
       {
         onMessage: (message) => this.#store.apply(message, this.#now),
+        onUnreadable: ({ message, field }) => {
+          const code = "unreadable";
+          this.#store.apply({ type: "error", code, message, field, fatal: false }, this.#now);
+        },
         onStatus: ({ phase }) => {
           this.#drawn.revision = -1;
           if (phase === "live" || phase === "waiting") void this.#readDirectory();
@@ -150,7 +155,7 @@ export class App {
     const rate = this.#sensor === "live" ? store.poseRateHz : null;
     const latency = decision?.timing.total_ms ?? null;
     this.#strip.render(this.#place.session, status, this.#sensor, rate, latency);
-    this.#gestures.render(store.welcome?.labels ?? [], store.welcome?.decide?.enter ?? null, body);
+    this.#gestures.render(store.welcome?.labels ?? [], store.welcome?.decide.enter ?? null, body);
     this.#affect.render(
       store.welcome?.gate ?? null,
       affectNow(store, now),
@@ -165,6 +170,12 @@ export class App {
     this.#cameraPanel.render(this.#camera, browserHost.now());
     const isHeld = body !== null && body.gesture !== "idle" && body.outcome !== "unsure";
     setText(this.#spoken, isHeld ? sentenceCase(body.gesture) : "");
+  }
+
+  /** Somebody does not want to wait, or wants the place back that another client took. */
+  #connectAgain(): void {
+    if (this.#connection.status.phase === "stopped") this.#connection.start();
+    else this.#connection.retryNow();
   }
 
   #inspect(row: Row): void {

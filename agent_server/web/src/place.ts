@@ -1,5 +1,7 @@
 /** Where the page was opened: which session it asks for, and where its server is. */
 
+import { socketUrl } from "./net/address.ts";
+
 export interface Place {
   readonly session: string;
   readonly token: string | null;
@@ -21,18 +23,13 @@ export interface Place {
 export function placeOf(address: string): Place {
   const page = new URL(address);
   const session = page.searchParams.get("session") || "demo";
-  const socket = (role: string): string => {
-    const url = new URL(`v1/sessions/${encodeURIComponent(session)}/${role}`, page);
-    url.protocol = page.protocol === "https:" ? "wss:" : "ws:";
-    return url.href;
-  };
   return {
     session,
     token: new URLSearchParams(page.hash.slice(1)).get("token"),
     isStepped: page.searchParams.has("step"),
     sendsPictures: page.searchParams.get("camera") === "jpeg",
-    monitorUrl: socket("monitor"),
-    sensorUrl: socket("sensor"),
+    monitorUrl: socketUrl(page, session, "monitor"),
+    sensorUrl: socketUrl(page, session, "sensor"),
     directoryUrl: new URL("v1/sessions", page).href,
     modelsUrl: new URL("v1/models/", page).href,
   };

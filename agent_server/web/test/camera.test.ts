@@ -3,12 +3,19 @@ import { beforeEach, test } from "node:test";
 import type { CameraState } from "../src/face/camera.ts";
 import { SensorLink, type LinkState } from "../src/face/link.ts";
 import { cameraWords } from "../src/face/words.ts";
-import { BACKOFF_CAP_MS } from "../src/net/backoff.ts";
-import type { CalibrationState, ErrorMessage } from "../src/protocol.ts";
+import { LATER_MS } from "../src/net/backoff.ts";
+import type { CalibrationState, ErrorMessage } from "../src/protocol/messages.ts";
 import { FakeHost, WELCOME } from "./fakes.ts";
 
-const URL = "ws://host/v1/sessions/demo/sensor";
-const FACE = { type: "face", originating_ns: 1 };
+const PLACE = { session: "demo", sensorUrl: "ws://host/v1/sessions/demo/sensor" };
+const FACE = {
+  type: "face",
+  originating_ns: 1,
+  format: "mesh478",
+  width: 640,
+  height: 480,
+  points: [],
+} as const;
 
 let host: FakeHost;
 let states: LinkState[];
@@ -24,7 +31,7 @@ beforeEach(() => {
 
 function joined(takesOver = false): SensorLink {
   const client = { name: "page", version: "1.2", token: "secret" };
-  const link = new SensorLink(URL, client, takesOver, host, {
+  const link = new SensorLink(PLACE, client, takesOver, host, {
     onState: (state) => states.push(state),
     onCalibration: (calibration) => calibrations.push(calibration),
     onRefusal: (error) => refusals.push(error),
@@ -44,17 +51,12 @@ const faces = (): number => host.socket.sent.filter(({ type }) => type === "face
 
 test("the camera comes as a sensor that has a face, and pushes nobody aside unasked", () => {
   welcomed();
-  const hello = {
-    type: "hello",
-    protocol: "1.0",
-    client: "page",
-    client_version: "1.2",
-    token: "secret",
-    face: "expected",
-  };
-  assert.deepEqual(host.socket.sent[0], hello);
+  const { type, token, session, role, take_over } = host.socket.sent[0] ?? {};
+  assert.deepEqual([type, token, session, role], ["hello", "secret", "demo", "sensor"]);
+  // That a face follows is the default, which is left out.
+  assert.equal(take_over, undefined);
   welcomed(true);
-  assert.deepEqual(host.socket.sent[0], { ...hello, take_over: true });
+  assert.equal(host.socket.sent[0]?.["take_over"], true);
 });
 
 test("what cannot leave at once is left out", () => {
@@ -67,7 +69,7 @@ test("what cannot leave at once is left out", () => {
   host.socket.backlog = 1e6;
   assert.equal(link.post(FACE), false);
   host.socket.backlog = 0;
-  assert.equal(link.post(new Uint8Array([65])), true);
+  assert.equal(link.post({ type: "image", originating_ns: 1, jpeg: new Uint8Array([65]) }), true);
   assert.equal(faces(), 1);
   assert.equal(host.socket.sentBytes.length, 1);
 });
@@ -76,7 +78,7 @@ test("a connection that is lost comes back", () => {
   const link = welcomed();
   host.socket.events.onClose(1006, "");
   assert.equal(link.post(FACE), false);
-  host.pass(BACKOFF_CAP_MS);
+  host.pass(LATER_MS);
   host.socket.events.onOpen();
   host.socket.say(WELCOME);
   assert.equal(link.post(FACE), true);
@@ -89,7 +91,7 @@ test("the place of another sensor is left to it, and nothing more is sent", () =
   assert.deepEqual(states, ["live", "taken"]);
   assert.ok(host.socket.isClosed);
   assert.equal(link.post(FACE), false);
-  host.pass(10 * BACKOFF_CAP_MS);
+  host.pass(10 * LATER_MS);
   assert.equal(host.sockets.length, 1);
   assert.deepEqual(refusals, []);
 });
@@ -98,7 +100,7 @@ test("a place that was taken over is not taken back unasked", () => {
   welcomed(true);
   host.socket.events.onClose(4409, "another sensor took over the face");
   assert.deepEqual(states, ["live", "replaced"]);
-  host.pass(10 * BACKOFF_CAP_MS);
+  host.pass(10 * LATER_MS);
   assert.equal(host.sockets.length, 1);
 });
 

@@ -5,7 +5,7 @@ import { faultOf } from "../src/face/eye.ts";
 import { seen, wholePicture, type Picture } from "../src/face/picture.ts";
 import { cropMap, regionOfPoints, toPicture } from "../src/face/region.ts";
 import { FaceTracker, type FaceNetworks } from "../src/face/tracker.ts";
-import { faceMessage, imageFrame } from "../src/face/wire.ts";
+import { faceMessage } from "../src/face/wire.ts";
 
 const SIDE = 128;
 
@@ -123,11 +123,6 @@ test("the detector is asked again only when the face is gone", async () => {
   presence = 0.4;
   assert.equal(await tracker.find(picture), null);
   assert.equal(detected, 2);
-});
-
-test("a picture's frame has the header of the protocol", () => {
-  const frame = imageFrame(new Uint8Array([1, 2]), 1.000001);
-  assert.deepEqual([...frame], [65, 70, 74, 49, 0, 0, 0, 0, 65, 66, 15, 0, 0, 0, 0, 0, 1, 2]);
 });
 
 test("landmarks are rounded to a sixteenth of a pixel, and no face is no message", () => {

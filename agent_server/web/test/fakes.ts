@@ -1,14 +1,20 @@
 /** A host with a clock that tests own, and messages as a server would send them. */
 
-import type { Host, Listener, Socket, SocketEvents, Status } from "../src/net/connection.ts";
+import type { Listener } from "../src/net/connection.ts";
+import type { Host, Socket, SocketEvents } from "../src/net/host.ts";
+import type { Status } from "../src/net/status.ts";
+import type { Incoming } from "../src/protocol/codec.ts";
 import type {
+  AckTelemetry,
+  AffectTelemetry,
   CommandBody,
-  Decision,
+  CommandMessage,
+  DecisionBody,
   DecisionMessage,
+  ErrorMessage,
   SceneState,
-  ServerMessage,
   Welcome,
-} from "../src/protocol.ts";
+} from "../src/protocol/messages.ts";
 
 interface Timer {
   readonly at: number;
@@ -20,6 +26,7 @@ export class FakeSocket implements Socket {
   readonly sentBytes: Uint8Array[] = [];
   backlog = 0;
   isClosed = false;
+  closeCode: number | undefined;
   readonly url: string;
   readonly subprotocol: string;
   readonly events: SocketEvents;
@@ -35,13 +42,14 @@ export class FakeSocket implements Socket {
     else this.sentBytes.push(data);
   }
 
-  close(): void {
+  close(code?: number): void {
     this.isClosed = true;
+    this.closeCode = code;
   }
 
   /** The server speaks. */
   say(message: object): void {
-    this.events.onText(JSON.stringify(message));
+    this.events.onMessage(JSON.stringify(message));
   }
 }
 
@@ -93,15 +101,25 @@ export class FakeHost implements Host {
 }
 
 export class FakeListener implements Listener {
-  readonly messages: ServerMessage[] = [];
+  readonly messages: Incoming[] = [];
   readonly statuses: Status[] = [];
+  readonly jumps: number[] = [];
+  readonly unreadable: (string | null)[] = [];
 
-  onMessage(message: ServerMessage): void {
+  onMessage(message: Incoming): void {
     this.messages.push(message);
   }
 
   onStatus(status: Status): void {
     this.statuses.push(status);
+  }
+
+  onClockJump(byMs: number): void {
+    this.jumps.push(byMs);
+  }
+
+  onUnreadable({ field }: { readonly field: string | null }): void {
+    this.unreadable.push(field);
   }
 }
 
@@ -109,6 +127,7 @@ export const SCENE: SceneState = {
   type: "scene",
   mode: "working",
   objects: { window: "open", curtain: "open" },
+  command_id: null,
 };
 
 export const WELCOME: Welcome = {
@@ -119,8 +138,10 @@ export const WELCOME: Welcome = {
   session: "demo",
   role: "monitor",
   epoch: "first",
+  ledger: "book",
+  resumed: false,
   sequence: 0,
-  heartbeat_s: 5,
+  heartbeat_s: 2,
   labels: ["cold", "hot", "loud", "smell", "bright", "hello", "idle"],
   gate: {
     mode: "required",
@@ -129,8 +150,11 @@ export const WELCOME: Welcome = {
     leave_valence: -2,
     leave_arousal: 2,
   },
+  decide: { enter: { cold: 0.65 }, leave: 0.4 },
+  limits: { max_message_bytes: 65_536, max_image_bytes: 524_288, max_errors: 20 },
   models: [],
   scene: SCENE,
+  differences: [],
 };
 
 export const COMMAND: CommandBody = {
@@ -139,16 +163,44 @@ export const COMMAND: CommandBody = {
   reaction: "close_window",
   cause: "cold",
   steps: [
-    { action: "stand_up", duration_s: 1 },
-    { action: "close", target: "window", duration_s: 2 },
+    { action: "stand_up", duration_s: 1, target: null },
+    { action: "close", duration_s: 2, target: "window" },
   ],
   priority: 2,
+  preempts: null,
   originating_ns: 1,
   issued_ns: 2,
   ttl_ms: 3000,
 };
 
-export function decision(index: number, change: Partial<Decision> = {}): DecisionMessage {
+/** The command as it comes to a renderer. */
+export function commanded(change: Partial<CommandMessage> = {}): CommandMessage {
+  return { type: "command", epoch: "first", age_ms: 0, server_ns: 0, ...COMMAND, ...change };
+}
+
+export function ackState(status: string, change: Partial<AckTelemetry> = {}): AckTelemetry {
+  const command_id = COMMAND.id;
+  return { type: "ack_state", command_id, status, step: null, reason: null, ...change };
+}
+
+export function affectState(stampMs: number, valence: number, arousal: number): AffectTelemetry {
+  return {
+    type: "affect_state",
+    originating_ns: stampMs * 1e6,
+    valence,
+    arousal,
+    valence_sd: null,
+    arousal_sd: null,
+    source: "client",
+    delay_ms: null,
+  };
+}
+
+export function error(code: string, message = "m"): ErrorMessage {
+  return { type: "error", code, message, field: null, fatal: false };
+}
+
+export function decision(index: number, change: Partial<DecisionBody> = {}): DecisionMessage {
   return {
     type: "decision",
     decision: {
@@ -171,6 +223,9 @@ export function decision(index: number, change: Partial<Decision> = {}): Decisio
         valence: 2,
         arousal: 1,
         age_ms: 40,
+        face: "paired",
+        source: "mesh",
+        gaze_deg: null,
       },
       scene: null,
       outcome: "idle",

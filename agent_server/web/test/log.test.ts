@@ -1,12 +1,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { CommandMessage } from "../src/protocol.ts";
 import { DecisionLog, type Row } from "../src/state/log.ts";
-import { COMMAND, decision } from "./fakes.ts";
+import { COMMAND, ackState, commanded, decision, error as failure } from "./fakes.ts";
 
-const copy: CommandMessage = { type: "command", epoch: "first", ...COMMAND };
+const copy = commanded();
 
-const counts = (rows: readonly Row[]) => rows.map((row) => (row.kind === "command" ? "c" : row.count));
+const counts = (rows: readonly Row[]) => rows.map((row) => ("count" in row ? row.count : row.kind === "command" ? "c" : row.kind));
 
 test("quiet decisions share a row, whether idle or unsure", () => {
   const log = new DecisionLog();
@@ -62,7 +61,7 @@ test("a command without a decision is listed, once", () => {
 
 test("errors are listed, the same in a row are counted", () => {
   const log = new DecisionLog();
-  const error = { type: "error", code: "classifier_failed", message: "no" } as const;
+  const error = failure("classifier_failed", "no");
   log.addError(error);
   log.addError({ ...error, message: "not again" });
   log.addDecision(decision(0));
@@ -87,4 +86,31 @@ test("old rows are let go, keys stay unique", () => {
   const last = log.rows.at(-1);
   assert.ok(last?.kind === "decisions");
   assert.equal(last.last.decision.gesture, "g39");
+});
+
+test("the end of a command is listed once, with what the command was for", () => {
+  const log = new DecisionLog();
+  log.addDecision(decision(0, { outcome: "command", command: COMMAND }));
+  log.addEnd(ackState("expired"));
+  log.addEnd(ackState("failed", { reason: "expired" }));
+  log.addEnd(ackState("assumed", { command_id: "another" }));
+  assert.deepEqual(counts(log.rows), [1, "end", "end"]);
+  const [, known, unknown] = log.rows;
+  assert.ok(known?.kind === "end" && known.reaction === "close_window");
+  assert.ok(known.ack.status === "expired");
+  assert.ok(unknown?.kind === "end" && unknown.reaction === null);
+});
+
+test("telemetry that is missed again and again shares a row, for a while", () => {
+  const log = new DecisionLog();
+  log.addMissed({ pose: 3 });
+  log.addDecision(decision(0));
+  log.addMissed({ pose: 2, forecast: 1 });
+  assert.deepEqual(counts(log.rows), ["missed", 1]);
+  const [row] = log.rows;
+  assert.ok(row?.kind === "missed");
+  assert.deepEqual(row.topics, { pose: 5, forecast: 1 });
+  for (let i = 1; i < 12; i++) log.addDecision(decision(i, { outcome: "gated", gesture: `g${i}` }));
+  log.addMissed({ pose: 1 });
+  assert.equal(log.rows.at(-1)?.kind, "missed");
 });

@@ -1,10 +1,19 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import type { PoseMessage } from "../src/protocol.ts";
+import type { PoseMessage } from "../src/protocol/messages.ts";
 import { Store } from "../src/state/store.ts";
 import { summaryOf } from "../src/state/summary.ts";
 import { affectNow } from "../src/state/view.ts";
-import { COMMAND, SCENE, WELCOME, decision } from "./fakes.ts";
+import {
+  COMMAND,
+  SCENE,
+  WELCOME,
+  ackState,
+  affectState as affect,
+  commanded,
+  decision,
+  error,
+} from "./fakes.ts";
 
 let store: Store;
 
@@ -16,10 +25,6 @@ beforeEach(() => {
 function pose(stampMs: number, body = 7): PoseMessage {
   const joints = Array.from({ length: 9 }, () => [0, 0, 2, 1] as const);
   return { type: "pose", originating_ns: stampMs * 1e6, body_id: body, joints };
-}
-
-function affect(stampMs: number, valence: number, arousal: number) {
-  return { type: "affect_state", originating_ns: stampMs * 1e6, valence, arousal } as const;
 }
 
 test("the rate is that of the capture times, not of the arrivals", () => {
@@ -54,7 +59,8 @@ test("affect is stale after a while, and when the gate found no usable face", ()
   });
   assert.equal(affectNow(store, 2_600)?.isFresh, false);
   const blind = { mode: "required", is_open: false, reason: "the face is stale" } as const;
-  const gate = { ...blind, valence: null, arousal: null, age_ms: 1_200 };
+  const none = { valence: null, arousal: null, face: null, source: null, gaze_deg: null };
+  const gate = { ...blind, ...none, age_ms: 1_200 };
   store.apply(decision(1, { gate, end_ns: 2_200e6 }), 1_500);
   assert.equal(affectNow(store, 1_500)?.isFresh, false);
 });
@@ -68,25 +74,40 @@ test("objects that changed are remembered with the time, the first state is no c
 test("a command is followed through its acks", () => {
   store.apply(decision(3, { outcome: "command", gesture: "cold", command: COMMAND }), 0);
   assert.equal(store.running?.status, null);
-  const ack = { type: "ack_state", command_id: COMMAND.id } as const;
-  store.apply({ ...ack, status: "accepted" }, 0);
+  store.apply(ackState("accepted"), 0);
   assert.equal(store.running?.step, null);
-  store.apply({ ...ack, status: "started" }, 0);
+  store.apply(ackState("started"), 0);
   assert.equal(store.running?.step, 0);
-  store.apply({ ...ack, status: "progress", step: 1 }, 0);
-  store.apply({ ...ack, status: "failed", reason: "stuck" }, 0);
+  store.apply(ackState("progress", { step: 1 }), 0);
+  store.apply(ackState("failed", { reason: "stuck" }), 0);
   assert.deepEqual(
     [store.running?.step, store.running?.status, store.running?.reason],
     [1, "failed", "stuck"],
   );
-  store.apply({ ...ack, command_id: "another", status: "done" }, 0);
+  store.apply(ackState("done", { command_id: "another" }), 0);
   assert.equal(store.running?.status, "failed");
+});
+
+test("how a command ended is listed, unless it was simply carried out", () => {
+  store.apply(decision(3, { outcome: "command", gesture: "cold", command: COMMAND }), 0);
+  for (const status of ["accepted", "started", "progress", "done"]) {
+    store.apply(ackState(status), 0);
+  }
+  assert.equal(store.log.rows.length, 1);
+  store.apply(ackState("timed_out"), 0);
+  assert.equal(store.running?.status, "timed_out");
+  assert.equal(store.log.rows.at(-1)?.kind, "end");
+});
+
+test("telemetry that was missed is listed", () => {
+  store.apply({ type: "missed", topics: { pose: 4 } }, 0);
+  assert.equal(store.log.rows.at(-1)?.kind, "missed");
 });
 
 test("the renderer's copy of a command does not start it over", () => {
   store.apply(decision(3, { outcome: "command", command: COMMAND }), 0);
-  store.apply({ type: "ack_state", command_id: COMMAND.id, status: "done" }, 0);
-  store.apply({ type: "command", epoch: "first", ...COMMAND }, 0);
+  store.apply(ackState("done"), 0);
+  store.apply(commanded(), 0);
   assert.equal(store.running?.status, "done");
 });
 
@@ -103,14 +124,14 @@ test("a welcome of the same epoch keeps what is known, another one forgets it", 
 });
 
 test("only the last errors are kept", () => {
-  for (let i = 0; i < 9; i++) store.apply({ type: "error", code: `c${i}`, message: "m" }, 0);
+  for (let i = 0; i < 9; i++) store.apply(error(`c${i}`), 0);
   assert.deepEqual(store.errors.map(({ code }) => code), ["c4", "c5", "c6", "c7", "c8"]);
 });
 
 test("the summary is plain JSON and lets go of what is old", () => {
   store.apply(pose(40), 100);
   store.apply(decision(1, { gesture: "cold", outcome: "gated" }), 100);
-  const status = { phase: "live", fault: null, retryAt: null, roundTripMs: 1 } as const;
+  const status = { phase: "live", fault: null, retryAt: null, roundTripMs: 1, offsetMs: 7 } as const;
   const at = (now: number) =>
     summaryOf({ store, status, problem: null, sensor: "live", pictures: 4, now });
   const fresh = at(200);

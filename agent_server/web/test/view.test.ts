@@ -1,15 +1,24 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import type { Fault, Status } from "../src/net/connection.ts";
+import type { Fault, Status } from "../src/net/status.ts";
 import { readDirectory, type Directory } from "../src/net/directory.ts";
-import { BACKOFF_BASE_MS, BACKOFF_CAP_MS, fullJitter } from "../src/net/backoff.ts";
 import { placeOf } from "../src/place.ts";
-import type { SceneState } from "../src/protocol.ts";
-import { COMMAND, SCENE, decision } from "./fakes.ts";
+import type { SceneState } from "../src/protocol/messages.ts";
+import { COMMAND, SCENE, ackState, decision } from "./fakes.ts";
 import { progressOf, type Running } from "../src/state/running.ts";
 import { Store } from "../src/state/store.ts";
 import { problemOf, sensorState, type SensorState } from "../src/state/view.ts";
-import { level, reasonOf, sentenceCase, sessionTime } from "../src/state/words.ts";
+import {
+  endText,
+  endWord,
+  errorWord,
+  level,
+  missedText,
+  reasonOf,
+  sentenceCase,
+  sessionTime,
+  signedSeconds,
+} from "../src/state/words.ts";
 
 const place = placeOf("https://host/some/prefix/?session=lab%201&step#token=a%2Bb");
 
@@ -19,10 +28,10 @@ const listed = (sensor: boolean): Directory => ({
 });
 
 function waiting(fault: Fault): Status {
-  return { phase: "waiting", fault, retryAt: 5, roundTripMs: null };
+  return { phase: "waiting", fault, retryAt: 5, roundTripMs: null, offsetMs: null };
 }
 
-const live: Status = { phase: "live", fault: null, retryAt: null, roundTripMs: null };
+const live: Status = { phase: "live", fault: null, retryAt: null, roundTripMs: null, offsetMs: null };
 
 test("the page's address says the session, the token and the server's paths", () => {
   assert.deepEqual(place, {
@@ -39,13 +48,6 @@ test("the page's address says the session, the token and the server's paths", ()
   assert.equal(plain.session, "demo");
   assert.equal(plain.token, null);
   assert.equal(plain.monitorUrl, "ws://127.0.0.1:8765/v1/sessions/demo/monitor");
-});
-
-test("the wait is spread over the whole bound and the bound is kept", () => {
-  assert.equal(fullJitter(0, () => 0), 0);
-  assert.equal(fullJitter(0, () => 1), BACKOFF_BASE_MS);
-  assert.equal(fullJitter(3, () => 1), 8 * BACKOFF_BASE_MS);
-  assert.equal(fullJitter(5000, () => 1), BACKOFF_CAP_MS);
 });
 
 test("the sensor is live while poses come, else what the directory says", () => {
@@ -73,8 +75,18 @@ test("each trouble is named, with the address or the server's own words", () => 
   const version = ask(waiting({ kind: "version", message: "speaks 2.0" }));
   assert.equal(version?.kind, "version");
   assert.match(version?.text ?? "", /speaks 2\.0/);
-  assert.match(ask(waiting({ kind: "lost", code: 4429, reason: "full" }))?.text ?? "", /full/);
+  assert.match(ask(waiting({ kind: "lost", closeCode: 4429, reason: "full" }))?.text ?? "", /full/);
   assert.equal(ask(waiting({ kind: "silent" }))?.kind, "lost");
+});
+
+test("a connection that is given up says so, and offers to connect again", () => {
+  const fault: Fault = { kind: "lost", closeCode: 4409, reason: "taken over" };
+  const unknown: Directory = { kind: "unknown" };
+  const ask = (status: Status) => problemOf(status, unknown, "live", place, false);
+  const problem = ask({ ...waiting(fault), phase: "stopped", retryAt: null });
+  assert.equal(problem?.isGivenUp, true);
+  assert.match(problem?.text ?? "", /taken over.*does not come back by itself/);
+  assert.equal(ask(waiting(fault))?.isGivenUp, false);
 });
 
 test("a server that answers but opens no session is told from one that is gone", () => {
@@ -119,7 +131,11 @@ test("a command's progress is the renderer's word, or the usual time where none 
   const spoken = { ...silent, status: "progress", step: 0 };
   assert.deepEqual(ask(spoken, 60_000), { state: "under_way", step: 0, isReported: true });
   assert.equal(ask({ ...spoken, status: "done" }, 0).state, "done");
-  assert.equal(ask({ ...spoken, status: "failed" }, 0, SCENE).state, "failed");
+  for (const status of ["failed", "expired", "preempted", "timed_out"]) {
+    assert.equal(ask({ ...spoken, status }, 0, SCENE).state, "failed");
+  }
+  const assumed = ask({ ...spoken, status: "assumed" }, 0, SCENE);
+  assert.deepEqual(assumed, { state: "done", step: null, isReported: false });
 });
 
 test("names and numbers in words", () => {
@@ -134,6 +150,19 @@ test("names and numbers in words", () => {
   const scene = { mode: "working", rule: "r", precondition: "window = open", met: true, reason: "" };
   const command = { ...quiet, outcome: "command", gesture: "cold", reason: "cold: free", scene };
   assert.equal(reasonOf(command), "Window = open, free");
+});
+
+test("ends, missed telemetry and what is no error are said in words", () => {
+  assert.equal(endText(ackState("expired"), "close_window"), "Close window: nobody started it in time");
+  const word = ackState("failed", { reason: "preempted" });
+  assert.equal(endText(word, null), "Demo-c1: another command came");
+  assert.equal(endText(ackState("failed", { reason: "it is stuck" }), "greet"), "Greet: it is stuck");
+  assert.equal(endWord("timed_out"), "Timed out");
+  assert.equal(endWord("failed"), "Failed");
+  assert.match(missedText({ pose: 1_200, affect_state: 1 }), /1,200 pose, 1 affect state/);
+  assert.equal(errorWord("scene_differs"), "Room differs");
+  assert.equal(errorWord("no_model"), "Error");
+  assert.equal(signedSeconds(-1_234.6), "\u22121.235 s");
 });
 
 test("a page whose camera is the only sensor asks for a body, not for a sensor", () => {

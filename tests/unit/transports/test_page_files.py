@@ -64,3 +64,12 @@ def test_reading_faces_adds_at_most_eight_megabytes_and_nothing_to_the_page_itse
     assert sum(path.stat().st_size for path in (worker, runtime, *models)) < 8e6
     assert "onnxruntime" not in page.read_text("utf-8")
     assert "onnxruntime" in (assets.page() / "onnxruntime.md").read_text("utf-8")
+
+
+@needs_page
+async def test_pages_of_other_servers_may_import_the_client_and_nothing_else():
+    async with live() as server, httpx.AsyncClient(base_url=server.url) as http:
+        client = await http.get("/client.js")
+        assert "RendererClient" in client.text
+        assert client.headers["access-control-allow-origin"] == "*"
+        assert "access-control-allow-origin" not in (await http.get("/")).headers

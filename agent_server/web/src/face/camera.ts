@@ -8,10 +8,12 @@ import { CameraError, Eye, type CameraFault } from "./eye.ts";
 import { SensorLink, type LinkState } from "./link.ts";
 import { storeNeutral, storedNeutral, type Neutral } from "./neutral.ts";
 import { FaceReader } from "./reader.ts";
-import { faceMessage, imageFrame, stampOf } from "./wire.ts";
-import type { Client, Host } from "../net/connection.ts";
+import { faceMessage, imageMessage, stampOf } from "./wire.ts";
+import type { Client } from "../net/connection.ts";
+import type { Host } from "../net/host.ts";
 import type { Place } from "../place.ts";
-import type { CalibrationState } from "../protocol.ts";
+import type { Outgoing } from "../protocol/codec.ts";
+import type { CalibrationState } from "../protocol/messages.ts";
 
 export type CameraPhase = "off" | "asking" | "loading" | "running" | "failed";
 
@@ -60,7 +62,7 @@ export class Camera {
 
   readonly #place: Place;
   readonly #host: Host;
-  readonly #client: Omit<Client, "sensor">;
+  readonly #client: Client;
   readonly #video: HTMLVideoElement;
   readonly #onChange: () => void;
   #link: SensorLink | null = null;
@@ -75,7 +77,7 @@ export class Camera {
   constructor(
     place: Place,
     host: Host,
-    client: Omit<Client, "sensor">,
+    client: Client,
     video: HTMLVideoElement,
     onChange: () => void,
   ) {
@@ -137,7 +139,7 @@ export class Camera {
   // ------------------------------------------------------------------ the session
 
   #join(turn: number, takesOver: boolean): void {
-    this.#link = new SensorLink(this.#place.sensorUrl, this.#client, takesOver, this.#host, {
+    this.#link = new SensorLink(this.#place, this.#client, takesOver, this.#host, {
       onState: (link) => {
         if (turn !== this.#turn) return;
         this.#enter({ link });
@@ -149,8 +151,8 @@ export class Camera {
     this.#link.start();
   }
 
-  #post(data: object | Uint8Array<ArrayBuffer>): boolean {
-    return this.#link?.post(data) ?? false;
+  #post(message: Outgoing): boolean {
+    return this.#link?.post(message) ?? false;
   }
 
   #postNeutral({ valence, arousal }: Neutral): void {
@@ -230,7 +232,7 @@ export class Camera {
       const now = this.#host.now();
       const jpeg = (await this.#eye?.jpeg()) ?? null;
       if (turn !== this.#turn) return;
-      const hasLeft = jpeg !== null && this.#post(imageFrame(jpeg, now));
+      const hasLeft = jpeg !== null && this.#post(imageMessage(jpeg, now));
       this.#enter({ rateHz: this.#rateWith(hasLeft) });
       this.#host.after(PICTURE_EVERY_MS, () => void next());
     };

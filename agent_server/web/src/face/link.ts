@@ -1,7 +1,10 @@
 /** The camera's place in the session: kept while nobody else sends the face, given up otherwise. */
 
-import { Connection, type Client, type Host } from "../net/connection.ts";
-import { CLOSE_REPLACED, type CalibrationState, type ErrorMessage } from "../protocol.ts";
+import { Connection, type Client } from "../net/connection.ts";
+import type { Host } from "../net/host.ts";
+import type { Place } from "../place.ts";
+import { jsonCodec, type Outgoing } from "../protocol/codec.ts";
+import type { CalibrationState, ErrorMessage } from "../protocol/messages.ts";
 
 export type LinkState =
   | "opening"
@@ -31,25 +34,35 @@ export class SensorLink {
 
   /** @param takesOver Whether to push aside a sensor that sends the face already. */
   constructor(
-    url: string,
-    client: Omit<Client, "sensor">,
+    { sensorUrl, session }: Pick<Place, "sensorUrl" | "session">,
+    client: Client,
     takesOver: boolean,
     host: Host,
     events: LinkEvents,
   ) {
     this.#events = events;
-    const sensor = { face: "expected", ...(takesOver ? { take_over: true } : {}) } as const;
-    this.#connection = new Connection(url, { ...client, sensor }, host, {
-      onMessage: (message) => {
-        if (message.type === "calibration_state") events.onCalibration(message);
-        else if (message.type === "error") this.#refused(message);
+    this.#connection = new Connection(
+      {
+        url: sensorUrl,
+        session,
+        role: "sensor",
+        client,
+        codec: jsonCodec,
+        greeting: () => ({ face: "expected", take_over: takesOver }),
       },
-      onStatus: ({ phase, fault }) => {
-        // Coming back would push aside the one that has just taken over.
-        if (fault?.kind === "lost" && fault.code === CLOSE_REPLACED) this.#leave("replaced");
-        else if (phase === "live" || phase === "waiting") this.#enter(phase);
+      host,
+      {
+        onMessage: (message) => {
+          if (message.type === "calibration_state") events.onCalibration(message);
+          else if (message.type === "error") this.#refused(message);
+        },
+        onStatus: ({ phase, fault }) => {
+          // Coming back would push aside the one that has just taken over.
+          if (phase === "stopped" && fault !== null) this.#leave("replaced");
+          else if (phase === "live" || phase === "waiting") this.#enter(phase);
+        },
       },
-    });
+    );
   }
 
   start(): void {
@@ -57,9 +70,9 @@ export class SensorLink {
   }
 
   /** Send unless it would have to wait; tells whether it went out. */
-  post(data: object | Uint8Array<ArrayBuffer>): boolean {
+  post(message: Outgoing): boolean {
     if (this.state !== "live" || this.#connection.backlog >= MAX_BACKLOG) return false;
-    this.#connection.post(data);
+    this.#connection.post(message);
     return true;
   }
 

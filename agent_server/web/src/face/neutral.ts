@@ -1,6 +1,6 @@
 /** A person's neutral face, kept in the browser from one visit to the next. */
 
-import type { CalibrationState } from "../protocol.ts";
+import type { CalibrationState } from "../protocol/messages.ts";
 
 export type Neutral = Pick<CalibrationState, "valence" | "arousal">;
 

@@ -1,11 +1,9 @@
 /** What the camera sends: landmarks, or pictures where the page cannot read them. */
 
-import type { FacePoints } from "../protocol.ts";
+import type { FacePoints, Image } from "../protocol/messages.ts";
 import type { Looked } from "./exchange.ts";
 
 const STEPS_PER_PIXEL = 16;
-const MAGIC = [0x41, 0x46, 0x4a, 0x31];
-const HEADER_BYTES = 16;
 
 /** Milliseconds of the page's clock as the whole nanoseconds of a stamp. */
 export function stampOf(ms: number): number {
@@ -31,11 +29,6 @@ export function faceMessage({ points, width, height, capturedAt }: Looked): Face
   };
 }
 
-/** A binary frame: `AFJ1`, flags, the stamp in 64 bits, all little-endian, and the JPEG. */
-export function imageFrame(jpeg: Uint8Array, capturedAt: number): Uint8Array<ArrayBuffer> {
-  const frame = new Uint8Array(HEADER_BYTES + jpeg.length);
-  frame.set(MAGIC);
-  new DataView(frame.buffer).setBigInt64(8, BigInt(stampOf(capturedAt)), true);
-  frame.set(jpeg, HEADER_BYTES);
-  return frame;
+export function imageMessage(jpeg: Uint8Array, capturedAt: number): Image {
+  return { type: "image", originating_ns: stampOf(capturedAt), jpeg };
 }

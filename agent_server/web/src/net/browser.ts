@@ -1,6 +1,6 @@
-/** The browser behind the connection's {@link Host}. */
+/** The {@link Host} that a browser is, and a node that has websockets of its own. */
 
-import type { Host, Socket, SocketEvents } from "./connection.ts";
+import type { Host, Socket, SocketEvents } from "./host.ts";
 
 export const browserHost: Host = {
   open: openSocket,
@@ -14,10 +14,11 @@ export const browserHost: Host = {
 
 function openSocket(url: string, subprotocol: string, events: SocketEvents): Socket {
   const socket = new WebSocket(url, subprotocol);
+  socket.binaryType = "arraybuffer";
   socket.addEventListener("open", () => events.onOpen());
-  socket.addEventListener("message", ({ data }) => {
-    if (typeof data === "string") events.onText(data);
-  });
+  socket.addEventListener("message", ({ data }: MessageEvent<string | ArrayBuffer>) =>
+    events.onMessage(typeof data === "string" ? data : new Uint8Array(data)),
+  );
   socket.addEventListener("close", ({ code, reason }) => events.onClose(code, reason));
   return {
     send(data) {
@@ -26,6 +27,6 @@ function openSocket(url: string, subprotocol: string, events: SocketEvents): Soc
     get backlog() {
       return socket.bufferedAmount;
     },
-    close: () => socket.close(),
+    close: (code) => socket.close(code),
   };
 }

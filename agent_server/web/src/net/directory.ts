@@ -1,6 +1,10 @@
 /** What `GET v1/sessions` says: which sessions there are and which of them have a sensor. */
 
-import type { SessionInfo } from "../protocol.ts";
+/** One session in the answer. */
+export interface SessionInfo {
+  readonly id: string;
+  readonly sensor: boolean;
+}
 
 export type Directory =
   | { readonly kind: "unknown" }

@@ -1,6 +1,6 @@
 /** The valence/arousal plane with the gate drawn into it, and what the gate says. */
 
-import type { AffectTelemetry, GateLevels, GateVerdict } from "../protocol.ts";
+import type { AffectTelemetry, GateLevels, GateBody } from "../protocol/messages.ts";
 import type { Timed } from "../state/store.ts";
 import type { Affect } from "../state/view.ts";
 import { level, sentenceCase, sourceWord } from "../state/words.ts";
@@ -76,7 +76,7 @@ export class AffectPanel {
     levels: GateLevels | null,
     affect: Affect | null,
     trail: readonly Timed<AffectTelemetry>[],
-    verdict: GateVerdict | null,
+    verdict: GateBody | null,
     now: number,
   ): void {
     const mode = verdict?.mode ?? levels?.mode ?? null;

@@ -1,6 +1,6 @@
 /** One bar a class: its probability, its threshold, and which gesture is held to be going on. */
 
-import type { Decision } from "../protocol.ts";
+import type { DecisionBody } from "../protocol/messages.ts";
 import { sentenceCase } from "../state/words.ts";
 import { h, setAttribute, setState, setText } from "../ui/dom.ts";
 
@@ -82,7 +82,7 @@ export class GesturePanel {
     root.append(this.#bars.root);
   }
 
-  render(labels: readonly string[], thresholds: Thresholds | null, decision: Decision | null): void {
+  render(labels: readonly string[], thresholds: Thresholds | null, decision: DecisionBody | null): void {
     this.#bars.render(
       labels,
       thresholds,

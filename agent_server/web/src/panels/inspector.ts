@@ -1,15 +1,29 @@
 /** The full reasons of one decision, over the live panels; it stays while the log moves on. */
 
 import type {
+  AckTelemetry,
   CommandBody,
   CommandMessage,
   DecisionMessage,
   ErrorMessage,
   Timing,
   Welcome,
-} from "../protocol.ts";
+} from "../protocol/messages.ts";
 import type { Row } from "../state/log.ts";
-import { level, milliseconds, outcomeWord, percent, sentenceCase, sessionTime } from "../state/words.ts";
+import { endOf } from "../state/running.ts";
+import {
+  count,
+  endText,
+  endWord,
+  errorWord,
+  level,
+  milliseconds,
+  missedText,
+  outcomeWord,
+  percent,
+  sentenceCase,
+  sessionTime,
+} from "../state/words.ts";
 import { h, setState } from "../ui/dom.ts";
 import { Bars } from "./gestures.ts";
 import { stepWords } from "./room.ts";
@@ -49,6 +63,8 @@ export class Inspector {
     this.#content.scrollTop = 0;
     if (row.kind === "command") this.#showCommand(row.command);
     else if (row.kind === "error") this.#showError(row.error, row.count);
+    else if (row.kind === "end") this.#showEnd(row.ack, row.reaction);
+    else if (row.kind === "missed") this.#showMissed(row.topics);
     else this.#showDecision(row.last, row.count, welcome);
     this.#close.focus();
   }
@@ -67,29 +83,57 @@ export class Inspector {
     );
   }
 
-  #showError(error: ErrorMessage, count: number): void {
+  #showError(error: ErrorMessage, times: number): void {
     setState(this.#root, "outcome", "error");
-    this.#title.textContent = "Error";
-    this.#subtitle.textContent = count > 1 ? `the latest of ${count} in a row` : "";
+    this.#title.textContent = errorWord(error.code);
+    this.#subtitle.textContent = times > 1 ? `the latest of ${times} in a row` : "";
     this.#content.replaceChildren(
       h("p", { class: "reason-lead" }, sentenceCase(error.message)),
       section("Details", facts([["Code", h("code", {}, error.code)], ["Field", error.field ?? "none"]])),
     );
   }
 
-  #showDecision({ decision, timing }: DecisionMessage, count: number, welcome: Welcome | null): void {
+  #showEnd(ack: AckTelemetry, reaction: string | null): void {
+    const end = endOf(ack);
+    setState(this.#root, "outcome", end);
+    this.#title.textContent = endWord(end);
+    this.#subtitle.textContent = "";
+    this.#content.replaceChildren(
+      h("p", { class: "reason-lead" }, `${endText(ack, reaction)}.`),
+      section(
+        "Command",
+        facts([
+          ["Id", h("code", {}, ack.command_id)],
+          ["Last step", ack.step === null ? "none" : `${ack.step + 1}`],
+          ["Reason given", ack.reason ?? "none"],
+        ]),
+      ),
+    );
+  }
+
+  #showMissed(topics: Readonly<Record<string, number>>): void {
+    setState(this.#root, "outcome", "missed");
+    this.#title.textContent = "Missed";
+    this.#subtitle.textContent = "";
+    this.#content.replaceChildren(
+      h("p", { class: "reason-lead" }, `${missedText(topics)}: only the latest of each kind waits.`),
+      section("Messages", facts(Object.entries(topics).map(([topic, n]): Fact => [sentenceCase(topic), count(n)]))),
+    );
+  }
+
+  #showDecision({ decision, timing }: DecisionMessage, times: number, welcome: Welcome | null): void {
     const { gate, scene, quality, command } = decision;
     setState(this.#root, "outcome", decision.outcome);
     this.#title.textContent =
       command === null ? outcomeWord(decision.outcome) : sentenceCase(command.reaction);
     this.#subtitle.textContent =
       `${sessionTime(decision.end_ns)}, decision ${decision.id}` +
-      (count > 1 ? `, the latest of ${count} alike` : "");
+      (times > 1 ? `, the latest of ${times} alike` : "");
 
     const bars = new Bars();
     bars.render(
       welcome?.labels ?? Object.keys(decision.probabilities),
-      welcome?.decide?.enter ?? null,
+      welcome?.decide.enter ?? null,
       decision.probabilities,
       decision.gesture,
     );

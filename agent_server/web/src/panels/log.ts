@@ -1,7 +1,18 @@
 /** The log of decisions: newest first, each row a button that opens its reasons. */
 
 import type { Row } from "../state/log.ts";
-import { milliseconds, outcomeWord, reasonOf, sentenceCase, sessionTime } from "../state/words.ts";
+import { endOf } from "../state/running.ts";
+import {
+  endText,
+  endWord,
+  errorWord,
+  milliseconds,
+  missedText,
+  outcomeWord,
+  reasonOf,
+  sentenceCase,
+  sessionTime,
+} from "../state/words.ts";
 import { h, setAttribute, setState, setText } from "../ui/dom.ts";
 
 /** Outcomes that are worth reading out to those who do not see the log. */
@@ -102,13 +113,26 @@ export class LogPanel {
 function fill(line: Line, row: Row): void {
   line.row = row;
   const { cells, button } = line;
-  const times = row.kind === "command" ? 1 : row.count;
+  const times = "count" in row ? row.count : 1;
   setText(cells.count, times > 1 ? `\u00d7 ${times}` : "");
   setAttribute(cells.count, "aria-label", times > 1 ? `${times} in a row` : null);
   if (row.kind === "error") {
     setState(button, "outcome", "error");
-    setText(cells.outcome, "Error");
+    setText(cells.outcome, errorWord(row.error.code));
     setText(cells.why, sentenceCase(row.error.message));
+    return;
+  }
+  if (row.kind === "end") {
+    const end = endOf(row.ack);
+    setState(button, "outcome", end);
+    setText(cells.outcome, endWord(end));
+    setText(cells.why, endText(row.ack, row.reaction));
+    return;
+  }
+  if (row.kind === "missed") {
+    setState(button, "outcome", "missed");
+    setText(cells.outcome, "Missed");
+    setText(cells.why, missedText(row.topics));
     return;
   }
   if (row.kind === "command") {

@@ -24,7 +24,9 @@ export class Notice {
     setState(this.#root, "kind", problem.kind);
     setText(this.#title, problem.title);
     setText(this.#text, problem.text);
-    this.#row.hidden = problem.retryAt === null;
+    this.#row.hidden = problem.retryAt === null && !problem.isGivenUp;
+    setText(this.#retry, problem.isGivenUp ? "Connect again" : "Try now");
+    if (problem.isGivenUp) setText(this.#wait, "");
     if (problem.retryAt !== null) {
       const seconds = Math.max(0, Math.ceil((problem.retryAt - clock) / 1000));
       setText(this.#wait, seconds === 0 ? "trying\u2026" : `next attempt in ${seconds} s`);

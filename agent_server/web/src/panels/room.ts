@@ -1,8 +1,8 @@
 /** The agent's room: what the agent does, the command under way, the state of every object. */
 
-import type { SceneState, Step } from "../protocol.ts";
+import type { SceneState, StepMessage } from "../protocol/messages.ts";
 import { progressOf, type Progress, type Running } from "../state/running.ts";
-import { sentenceCase } from "../state/words.ts";
+import { endWord, sentenceCase } from "../state/words.ts";
 import { h, setAttribute, setState, setText } from "../ui/dom.ts";
 import { pictogram } from "./pictograms.ts";
 
@@ -47,7 +47,7 @@ export class RoomPanel {
     }
     const progress = running === null ? null : progressOf(running, scene, now);
     if (running === null || progress === null) {
-      const isUnknown = scene?.command_id != null;
+      const isUnknown = (scene?.command_id ?? null) !== null;
       setText(this.#title, isUnknown ? "A command" : "No command yet");
       setText(this.#status, isUnknown ? "under way since before this page was opened" : "");
     } else {
@@ -118,15 +118,17 @@ export class RoomPanel {
   }
 }
 
-export function stepWords(step: Step): string {
+export function stepWords(step: StepMessage): string {
   const words = sentenceCase(step.action);
-  return step.target == null ? words : `${words} ${sentenceCase(step.target).toLowerCase()}`;
+  return step.target === null ? words : `${words} ${sentenceCase(step.target).toLowerCase()}`;
 }
 
-function statusOf({ command, reason }: Running, { state, isReported }: Progress): string {
+function statusOf({ command, status, reason }: Running, { state, isReported }: Progress): string {
   switch (state) {
-    case "failed":
-      return reason === null ? "failed" : `failed: ${reason}`;
+    case "failed": {
+      const word = endWord(status ?? "failed").toLowerCase();
+      return reason === null || reason === status ? word : `${word}: ${reason}`;
+    }
     case "done":
     case "ended":
       return state;
@@ -139,5 +141,5 @@ function statusOf({ command, reason }: Running, { state, isReported }: Progress)
 function targetOf({ command }: Running, { state, step }: Progress): string | null {
   if (state !== "under_way") return null;
   const now = step === null ? undefined : command.steps[step]?.target;
-  return now ?? command.steps.find(({ target }) => target != null)?.target ?? null;
+  return now ?? command.steps.find(({ target }) => target !== null)?.target ?? null;
 }

@@ -1,10 +1,10 @@
 /** The strip at the top and the counters at the bottom. */
 
-import type { Status } from "../net/connection.ts";
-import type { StatsMessage, Welcome } from "../protocol.ts";
+import type { Status } from "../net/status.ts";
+import type { StatsMessage, Welcome } from "../protocol/messages.ts";
 import type { SensorState } from "../state/view.ts";
-import { count, milliseconds } from "../state/words.ts";
-import { h, setState, setText } from "../ui/dom.ts";
+import { count, milliseconds, signedSeconds } from "../state/words.ts";
+import { h, setAttribute, setState, setText } from "../ui/dom.ts";
 
 const CONNECTION_WORDS: Readonly<Record<Status["phase"], string>> = {
   stopped: "stopped",
@@ -13,6 +13,8 @@ const CONNECTION_WORDS: Readonly<Record<Status["phase"], string>> = {
   live: "connected",
   waiting: "not connected",
 };
+
+const BROKEN: ReadonlySet<Status["phase"]> = new Set(["waiting", "stopped"]);
 
 const SENSOR_WORDS: Readonly<Record<SensorState, string>> = {
   unknown: "unknown",
@@ -59,15 +61,17 @@ export class StatusStrip {
     setState(
       this.#connection.root,
       "lamp",
-      status.phase === "live" ? "good" : status.phase === "waiting" ? "bad" : "wait",
+      status.phase === "live" ? "good" : BROKEN.has(status.phase) ? "bad" : "wait",
     );
     const shown = status.phase === "live" ? sensor : "unknown";
     setText(this.#sensor.value, SENSOR_WORDS[shown]);
     setState(this.#sensor.root, "lamp", shown === "live" ? "good" : "wait");
     setText(this.#rate.value, rateHz === null ? "\u2013" : `${rateHz.toFixed(0)} fps`);
     setText(this.#latency.value, latencyMs === null ? "\u2013" : milliseconds(latencyMs));
-    const { roundTripMs } = status;
+    const { roundTripMs, offsetMs } = status;
     setText(this.#roundTrip.value, roundTripMs === null ? "\u2013" : milliseconds(roundTripMs));
+    const clock = offsetMs === null ? null : `The server\u2019s clock less this page\u2019s: ${signedSeconds(offsetMs)}`;
+    setAttribute(this.#roundTrip.root, "title", clock);
   }
 }
 

@@ -9,7 +9,8 @@ import {
   type Color,
   type Material,
 } from "three";
-import { BONES, JOINTS, type JointSample } from "../protocol.ts";
+import type { JointSample } from "../protocol/messages.ts";
+import { BONES, JOINTS } from "../protocol/skeleton.ts";
 import { Follower } from "./smooth.ts";
 import {
   BONE_RADIUS,

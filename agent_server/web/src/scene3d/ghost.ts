@@ -13,7 +13,8 @@ import {
   SphereGeometry,
   type Vector3,
 } from "three";
-import { BONES, JOINT, JOINTS, type Point } from "../protocol.ts";
+import type { Point } from "../protocol/messages.ts";
+import { BONES, JOINT, JOINTS } from "../protocol/skeleton.ts";
 import { Follower } from "./smooth.ts";
 import { BONE_RADIUS, boneGeometry, jointGeometry, placeBone, placeJoint } from "./shapes.ts";
 

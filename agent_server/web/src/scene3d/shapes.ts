@@ -9,7 +9,7 @@ import {
   Vector3,
   type BufferGeometry,
 } from "three";
-import { BONES, JOINT, JOINTS } from "../protocol.ts";
+import { BONES, JOINT, JOINTS } from "../protocol/skeleton.ts";
 
 /** Radius of each joint's ball, in metres, by core joint. */
 export const JOINT_RADIUS: readonly number[] = Array.from({ length: JOINTS }, (_, joint) => {

@@ -8,7 +8,8 @@ import {
   Scene,
   WebGLRenderer,
 } from "three";
-import { JOINT, type JointSample, type Point } from "../protocol.ts";
+import type { JointSample, Point } from "../protocol/messages.ts";
+import { JOINT } from "../protocol/skeleton.ts";
 import { Figure } from "./figure.ts";
 import { Floor } from "./floor.ts";
 import { Ghost } from "./ghost.ts";

@@ -1,7 +1,7 @@
 /** A thin skin between shoulders and navel, so that a turn of the body can be read. */
 
 import { BufferAttribute, BufferGeometry, DoubleSide, Mesh, MeshBasicMaterial, type Color, type Vector3 } from "three";
-import { JOINT } from "../protocol.ts";
+import { JOINT } from "../protocol/skeleton.ts";
 
 const CORNERS = [JOINT.leftShoulder, JOINT.neck, JOINT.rightShoulder, JOINT.navel];
 

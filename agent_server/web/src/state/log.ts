@@ -1,6 +1,12 @@
 /** The log of decisions: notable ones one by one, like ones in a row collapsed. */
 
-import type { CommandMessage, DecisionMessage, ErrorMessage } from "../protocol.ts";
+import type {
+  AckTelemetry,
+  CommandBody,
+  CommandMessage,
+  DecisionMessage,
+  ErrorMessage,
+} from "../protocol/messages.ts";
 
 /** Outcomes in which nothing asked for anything; they share one row however they alternate. */
 const QUIET = new Set(["idle", "unsure"]);
@@ -23,7 +29,24 @@ export type Row =
       readonly key: number;
       readonly count: number;
       readonly error: ErrorMessage;
+    }
+  /** A command that ended otherwise than by being carried out. */
+  | {
+      readonly kind: "end";
+      readonly key: number;
+      readonly ack: AckTelemetry;
+      /** What the command was for; null where the log does not know it. */
+      readonly reaction: string | null;
+    }
+  /** Telemetry of each kind that this page was too slow for, added up while it goes on. */
+  | {
+      readonly kind: "missed";
+      readonly key: number;
+      readonly topics: Readonly<Record<string, number>>;
     };
+
+/** Telemetry that is missed again this few rows later is added to the row that stands. */
+const MISSED_TOGETHER = 10;
 
 export class DecisionLog {
   /** Oldest first; a row that grows is replaced, so that rows can be compared by identity. */
@@ -66,7 +89,7 @@ export class DecisionLog {
 
   /** Take a command on its way to the renderer; one that a decision explains has its row there. */
   addCommand(command: CommandMessage): void {
-    if (this.rows.some((row) => commandId(row) === command.id)) return;
+    if (this.rows.some((row) => commandOf(row)?.id === command.id)) return;
     this.#append({ kind: "command", key: this.#nextKey++, command });
   }
 
@@ -77,6 +100,27 @@ export class DecisionLog {
       return;
     }
     this.#append({ kind: "error", key: this.#nextKey++, count: 1, error });
+  }
+
+  /** Take the end of a command; what is said of it once more is not listed again. */
+  addEnd(ack: AckTelemetry): void {
+    const id = ack.command_id;
+    if (this.rows.some((row) => row.kind === "end" && row.ack.command_id === id)) return;
+    const given = this.rows.findLast((row) => commandOf(row)?.id === id);
+    const reaction = given === undefined ? null : (commandOf(given)?.reaction ?? null);
+    this.#append({ kind: "end", key: this.#nextKey++, ack, reaction });
+  }
+
+  addMissed(topics: Readonly<Record<string, number>>): void {
+    const index = this.rows.findLastIndex(({ kind }) => kind === "missed");
+    const open = this.rows[index];
+    if (open?.kind !== "missed" || this.rows.length - index > MISSED_TOGETHER) {
+      this.#append({ kind: "missed", key: this.#nextKey++, topics });
+      return;
+    }
+    const sum = { ...open.topics };
+    for (const [topic, n] of Object.entries(topics)) sum[topic] = (sum[topic] ?? 0) + n;
+    this.rows = this.rows.with(index, { ...open, topics: sum });
   }
 
   clear(): void {
@@ -93,9 +137,9 @@ export class DecisionLog {
   }
 }
 
-function commandId(row: Row): string | undefined {
-  if (row.kind === "error") return undefined;
-  return row.kind === "command" ? row.command.id : row.last.decision.command?.id;
+function commandOf(row: Row): CommandBody | null {
+  if (row.kind === "command") return row.command;
+  return row.kind === "decisions" ? row.last.decision.command : null;
 }
 
 /** What a decision must share with the one before to be counted into its row; null: nothing. */

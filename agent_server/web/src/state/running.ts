@@ -1,6 +1,19 @@
 /** How far a command is: by the renderer's word, or by its usual duration where none speaks. */
 
-import type { AckTelemetry, CommandBody, SceneState } from "../protocol.ts";
+import type { AckTelemetry, CommandBody, SceneState } from "../protocol/messages.ts";
+
+/** Ends of a command that are worth a word of their own; `assumed` is that of no renderer. */
+const ENDS = new Set(["failed", "expired", "preempted", "timed_out", "assumed"]);
+
+/** Whether a command has ended otherwise than by a renderer's `done`. */
+export function isOddEnd(ack: AckTelemetry): boolean {
+  return ENDS.has(ack.status);
+}
+
+/** How it ended: the server's word, or the reason that a renderer gave for its `failed`. */
+export function endOf({ status, reason }: AckTelemetry): string {
+  return status === "failed" && reason !== null && ENDS.has(reason) ? reason : status;
+}
 
 /** The latest command, and what the renderer said of it. */
 export interface Running {
@@ -24,13 +37,14 @@ export interface Progress {
 
 export function acknowledged(running: Running, ack: AckTelemetry): Running {
   const step = ack.step ?? (ack.status === "started" ? 0 : running.step);
-  return { ...running, status: ack.status, step, reason: ack.reason ?? null };
+  return { ...running, status: endOf(ack), step, reason: ack.reason };
 }
 
 export function progressOf(running: Running, scene: SceneState | null, now: number): Progress {
   const { command, status } = running;
-  const isReported = status !== null;
-  if (status === "failed" || status === "done") return { state: status, step: null, isReported };
+  const isReported = status !== null && status !== "assumed";
+  if (status === "done" || status === "assumed") return { state: "done", step: null, isReported };
+  if (status !== null && ENDS.has(status)) return { state: "failed", step: null, isReported };
   const passedS = (now - running.at) / 1000;
   if (scene?.command_id !== command.id) {
     const total = command.steps.reduce((sum, { duration_s }) => sum + duration_s, 0);

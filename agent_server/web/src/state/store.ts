@@ -4,6 +4,7 @@
  * Time is passed in (`now`, the page's clock in milliseconds), so that tests and `?step` own it.
  */
 
+import type { Incoming } from "../protocol/codec.ts";
 import type {
   AffectTelemetry,
   CommandBody,
@@ -12,12 +13,11 @@ import type {
   ForecastMessage,
   PoseMessage,
   SceneState,
-  ServerMessage,
   StatsMessage,
   Welcome,
-} from "../protocol.ts";
+} from "../protocol/messages.ts";
 import { DecisionLog } from "./log.ts";
-import { acknowledged, type Running } from "./running.ts";
+import { acknowledged, isOddEnd, type Running } from "./running.ts";
 
 /** A value and when the page got it. */
 export interface Timed<T> {
@@ -48,7 +48,7 @@ export class Store {
   readonly log = new DecisionLog();
   #poseStamps: number[] = [];
 
-  apply(message: ServerMessage, now: number): void {
+  apply(message: Incoming, now: number): void {
     this.revision += 1;
     switch (message.type) {
       case "welcome":
@@ -84,6 +84,7 @@ export class Store {
         if (this.running?.command.id === message.command_id) {
           this.running = acknowledged(this.running, message);
         }
+        if (isOddEnd(message)) this.log.addEnd(message);
         break;
       case "scene":
         this.#setScene(message, now);
@@ -95,8 +96,8 @@ export class Store {
         this.errors = [...this.errors, message].slice(-ERRORS_KEPT);
         this.log.addError(message);
         break;
-      case "ping":
-      case "pong":
+      case "missed":
+        this.log.addMissed(message.topics);
         break;
     }
   }

@@ -1,9 +1,9 @@
 /** The page's state as plain values, for tests: `window.agentPage.state()`. */
 
-import type { Status } from "../net/connection.ts";
-import type { StatsMessage } from "../protocol.ts";
+import type { Status } from "../net/status.ts";
+import type { StatsMessage } from "../protocol/messages.ts";
 import type { Row } from "./log.ts";
-import { progressOf, type Progress } from "./running.ts";
+import { endOf, progressOf, type Progress } from "./running.ts";
 import type { Store } from "./store.ts";
 import { affectNow, decisionNow, isFresh, type Affect, type Problem, type SensorState } from "./view.ts";
 
@@ -18,6 +18,8 @@ export interface Summary {
     readonly phase: string;
     readonly fault: string | null;
     readonly roundTripMs: number | null;
+    /** The server's clock less the page's. */
+    readonly offsetMs: number | null;
   };
   /** Kind of the problem that the notice names, or null. */
   readonly problem: string | null;
@@ -42,7 +44,10 @@ export interface Summary {
   /** Capture time of the pose on show, or null while nobody is. */
   readonly poseNs: number | null;
   readonly forecastFrames: number;
-  /** Rows of the log, newest first; `outcome` is `error` for what the server could not do. */
+  /**
+   * Rows of the log, newest first; `outcome` is `error` for what the server could not do, `missed`
+   * for telemetry that was lost, and for the end of a command how it ended.
+   */
   readonly log: readonly RowSummary[];
   readonly errors: readonly { readonly code: string; readonly message: string }[];
   readonly stats: StatsMessage | null;
@@ -68,6 +73,7 @@ export function summaryOf(page: {
       phase: status.phase,
       fault: status.fault?.kind ?? null,
       roundTripMs: status.roundTripMs,
+      offsetMs: status.offsetMs,
     },
     problem: page.problem?.kind ?? null,
     sensor: page.sensor,
@@ -112,5 +118,9 @@ function brief(row: Row): RowSummary {
       return { outcome: "command", gesture: null, count: 1 };
     case "error":
       return { outcome: "error", gesture: null, count: row.count };
+    case "end":
+      return { outcome: endOf(row.ack), gesture: null, count: 1 };
+    case "missed":
+      return { outcome: "missed", gesture: null, count: 1 };
   }
 }

@@ -1,9 +1,9 @@
 /** What the panels show, derived from store, connection and directory at one instant. */
 
 import type { Directory } from "../net/directory.ts";
-import type { Fault, Status } from "../net/connection.ts";
+import type { Fault, Status } from "../net/status.ts";
 import type { Place } from "../place.ts";
-import type { DecisionMessage } from "../protocol.ts";
+import type { DecisionMessage } from "../protocol/messages.ts";
 import type { Store, Timed } from "./store.ts";
 
 /** Telemetry of a kind that has not come for this long counts as gone. */
@@ -36,8 +36,9 @@ export interface Problem {
   readonly text: string;
   /** When the next attempt starts on the connection's clock, or null. */
   readonly retryAt: number | null;
+  /** Whether the page does not try again unless somebody asks it to. */
+  readonly isGivenUp: boolean;
 }
-
 
 /** Whether there is a value that still speaks of the present. */
 export function isFresh<T>(timed: Timed<T> | null, now: number): timed is Timed<T> {
@@ -67,8 +68,8 @@ export function affectNow(store: Store, now: number): Affect | null {
     valence,
     arousal,
     isFresh: isFresh(latest, now) && !isRefused,
-    spread: valence_sd == null || arousal_sd == null ? null : { valence: valence_sd, arousal: arousal_sd },
-    source: source ?? "client",
+    spread: valence_sd === null || arousal_sd === null ? null : { valence: valence_sd, arousal: arousal_sd },
+    source,
   };
 }
 
@@ -93,9 +94,11 @@ export function problemOf(
         title: "Connecting",
         text: `Asking for session \u201c${place.session}\u201d at ${place.monitorUrl}.`,
         retryAt,
+        isGivenUp: false,
       };
     }
-    return { ...explain(fault, directory, place), retryAt };
+    const isGivenUp = phase === "stopped";
+    return { ...explain(fault, directory, place, isGivenUp), retryAt, isGivenUp };
   }
   if (sensor === "none") {
     return {
@@ -105,6 +108,7 @@ export function problemOf(
         `Session \u201c${place.session}\u201d has no sensor yet. ` +
         `Connect one to ${place.sensorUrl}, or send a recording there with agent-server replay.`,
       retryAt: null,
+      isGivenUp: false,
     };
   }
   if (sensor === "no_body" && hasCamera) {
@@ -115,6 +119,7 @@ export function problemOf(
         "The camera of this page sends the face. The body comes from a sensor of its own: " +
         `connect one to ${place.sensorUrl}, or send a recording there with agent-server replay.`,
       retryAt: null,
+      isGivenUp: false,
     };
   }
   if (sensor === "no_body") {
@@ -123,12 +128,22 @@ export function problemOf(
       title: "Nobody in view",
       text: "The sensor is connected, but it sees no body at the moment.",
       retryAt: null,
+      isGivenUp: false,
     };
   }
   return null;
 }
 
-function explain(fault: Fault, directory: Directory, place: Place): Omit<Problem, "retryAt"> {
+type Explained = Pick<Problem, "kind" | "title" | "text">;
+
+const GIVEN_UP = " The page does not come back by itself: another client has its place, or the server said goodbye.";
+
+function explain(
+  fault: Fault,
+  directory: Directory,
+  place: Place,
+  isGivenUp: boolean,
+): Explained {
   switch (fault.kind) {
     case "version":
       return {
@@ -142,7 +157,7 @@ function explain(fault: Fault, directory: Directory, place: Place): Omit<Problem
       return {
         kind: "refused",
         title: "The server refused this page",
-        text: `${fault.message} (${fault.code}).`,
+        text: `${fault.message} (${fault.code}).${isGivenUp ? GIVEN_UP : ""}`,
       };
     case "silent":
       return {
@@ -154,14 +169,16 @@ function explain(fault: Fault, directory: Directory, place: Place): Omit<Problem
       return {
         kind: "lost",
         title: "Connection lost",
-        text: `The server closed the connection (${fault.reason || `code ${fault.code}`}).`,
+        text:
+          `The server closed the connection (${fault.reason || `code ${fault.closeCode}`}).` +
+          (isGivenUp ? GIVEN_UP : ""),
       };
     case "unreachable":
       return unreachable(directory, place);
   }
 }
 
-function unreachable(directory: Directory, place: Place): Omit<Problem, "retryAt"> {
+function unreachable(directory: Directory, place: Place): Explained {
   if (directory.kind === "refused" && (directory.status === 401 || directory.status === 403)) {
     return {
       kind: "refused",

@@ -1,6 +1,7 @@
 /** Names of the protocol in words for people. */
 
-import type { Decision } from "../protocol.ts";
+import type { AckTelemetry, DecisionBody } from "../protocol/messages.ts";
+import { endOf } from "./running.ts";
 
 const OUTCOMES: Readonly<Record<string, string>> = {
   command: "Command",
@@ -19,6 +20,40 @@ const SOURCES: Readonly<Record<string, string>> = {
   points68: "68 landmarks",
   blendshapes: "blendshapes",
 };
+
+const ENDS: Readonly<Record<string, readonly [title: string, text: string]>> = {
+  expired: ["Expired", "nobody started it in time"],
+  preempted: ["Cut short", "another command came"],
+  timed_out: ["Timed out", "the renderer said nothing more"],
+  assumed: ["Assumed done", "its usual time has passed, and no renderer reports"],
+};
+
+const ERRORS: Readonly<Record<string, string>> = {
+  scene_differs: "Room differs",
+  clock_jump: "Clock jump",
+};
+
+/** How a command ended: `expired` -> `Expired`. */
+export function endWord(end: string): string {
+  return ENDS[end]?.[0] ?? sentenceCase(end);
+}
+
+/** Which command ended, and why. */
+export function endText(ack: AckTelemetry, reaction: string | null): string {
+  const which = sentenceCase(reaction ?? ack.command_id);
+  const why = ENDS[endOf(ack)]?.[1] ?? ack.reason;
+  return why === null ? which : `${which}: ${why}`;
+}
+
+/** Telemetry that was lost: `12 pose, 3 forecast`. */
+export function missedText(topics: Readonly<Record<string, number>>): string {
+  const kinds = Object.entries(topics).map(([topic, n]) => `${count(n)} ${topic.replaceAll("_", " ")}`);
+  return `This page was too slow for ${kinds.join(", ")}`;
+}
+
+export function errorWord(code: string): string {
+  return ERRORS[code] ?? "Error";
+}
 
 /** What affect was read from; `client` is a sensor that gives valence and arousal itself. */
 export function sourceWord(source: string): string {
@@ -39,7 +74,7 @@ export function outcomeWord(outcome: string): string {
  * A decision's reason without the gesture before it, which is shown beside it; a command's begins
  * with the state of the room that asked for it.
  */
-export function reasonOf(decision: Pick<Decision, "gesture" | "reason" | "outcome" | "scene">): string {
+export function reasonOf(decision: Pick<DecisionBody, "gesture" | "reason" | "outcome" | "scene">): string {
   const { gesture, reason, outcome, scene } = decision;
   const prefix = `${gesture}: `;
   const rest = reason.startsWith(prefix) ? reason.slice(prefix.length) : reason;
@@ -64,6 +99,11 @@ export function level(value: number): string {
 /** Milliseconds with as many digits as matter. */
 export function milliseconds(value: number): string {
   return `${value < 10 ? value.toFixed(1) : value.toFixed(0)} ms`;
+}
+
+/** Milliseconds, ahead or behind, in seconds with a real sign. */
+export function signedSeconds(ms: number): string {
+  return `${ms < 0 ? "\u2212" : "+"}${(Math.abs(ms) / 1000).toFixed(3)} s`;
 }
 
 export function percent(share: number): string {
