@@ -136,7 +136,7 @@ def play(scenario: Scenario) -> Session:
     """
     rng = np.random.default_rng([scenario.seed, 23])
     person = Person.sample(rng, subject=f"s{scenario.seed:02d}")
-    place = _placement(rng, scenario)
+    place = place_before(rng, seated=scenario.seated)
     timeline = Timeline(rng, person, place)
     scripts: list[Script] = []
     for part in scenario.parts:
@@ -180,9 +180,9 @@ def _faces(scenario: Scenario, moods: list[AffectSample]) -> Sequence[Face | Aff
     return [person.show(mood, scenario.face_as) for mood in moods]
 
 
-def _placement(rng: np.random.Generator, scenario: Scenario) -> Placement:
+def place_before(rng: np.random.Generator, *, seated: bool) -> Placement:
     """Somewhere sensible: recorded sessions have a person who roughly faces the sensor."""
-    place = Placement.sample(rng, seated=scenario.seated)
+    place = Placement.sample(rng, seated=seated)
     return replace(
         place,
         heading_rad=float(np.radians(rng.normal(0, 6))),

@@ -1,20 +1,25 @@
 """The web application: websockets, health, sessions and the browser page."""
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
+import msgspec
 from fastapi import FastAPI
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
 from starlette.types import Scope
 
 from agent_server import __version__, assets
+from agent_server.errors import InvalidInput
 from agent_server.inference.manifest import MANIFEST_FILE, MODEL_FILE
+from agent_server.protocol.convert import skeleton_to_message
 from agent_server.protocol.schema import reference
 from agent_server.protocol.schema.json_schema import asyncapi
 from agent_server.service.hub import Hub
+from agent_server.synthetic.stand_in import stand_in
 from agent_server.transports.websocket import websocket_router
 
 _NO_PAGE = """<!doctype html><meta charset="utf-8"><title>agent-server</title>
@@ -110,6 +115,22 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
                 for session in hub.sessions.values()
             ]
         }
+
+    @app.get("/v1/stand-in")
+    async def stand_in_clip(gesture: str, seed: int = 0, take: int = 0) -> Response:
+        """What a made-up person does, for a page that plays without a sensor."""
+        try:
+            clip = await asyncio.to_thread(stand_in, gesture, abs(seed), abs(take))
+        except InvalidInput as error:
+            return JSONResponse({"detail": str(error)}, 422)
+        body = {
+            "gesture": clip.gesture,
+            "variant": clip.variant,
+            "onset_ns": clip.onset_ns,
+            "offset_ns": clip.offset_ns,
+            "frames": [skeleton_to_message(frame) for frame in clip.frames],
+        }
+        return Response(msgspec.json.encode(body), media_type="application/json")
 
     @app.get("/v1/models/{name}/{file}")
     async def face_network(name: str, file: str, sha256: str = "") -> Response:

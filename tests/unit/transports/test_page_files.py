@@ -73,3 +73,14 @@ async def test_pages_of_other_servers_may_import_the_client_and_nothing_else():
         assert "RendererClient" in client.text
         assert client.headers["access-control-allow-origin"] == "*"
         assert "access-control-allow-origin" not in (await http.get("/")).headers
+
+
+async def test_a_made_up_person_does_what_the_page_asks_for():
+    async with live() as server, httpx.AsyncClient(base_url=server.url) as http:
+        clip = (await http.get("/v1/stand-in", params={"gesture": "hello", "seed": 2})).json()
+        assert clip["gesture"] == "hello"
+        assert len(clip["frames"][0]["joints"]) == 25
+        assert clip["frames"][0]["type"] == "skeleton"
+        wrong = await http.get("/v1/stand-in", params={"gesture": "juggle"})
+        assert wrong.status_code == 422
+        assert "juggle" in wrong.json()["detail"]
