@@ -27,6 +27,7 @@ from agent_server.errors import RecordingError
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.service.hub import Hub
+from agent_server.service.seats import STAND_IN
 from agent_server.transports.server import address, bind, build_hub, load_models, serving
 
 SESSION = "demo"
@@ -67,13 +68,13 @@ async def _demo(
             await asyncio.to_thread(webbrowser.open, page)
         async with (
             join(base, SESSION, "monitor", hello=_hello(topics=["decision"])) as monitor,
-            Renderer(Options(base, SESSION, CLIENT)) as connection,
+            # Whoever brings a picture may have its place.
+            Renderer(Options(base, SESSION, CLIENT), capabilities=(STAND_IN,)) as connection,
         ):
-            renderer = TimedRenderer(connection)
-            acting = asyncio.create_task(_act(renderer))
+            acting = asyncio.create_task(_act(TimedRenderer(connection)))
             tasks = (
                 asyncio.create_task(_listen(monitor, Story(console))),
-                asyncio.create_task(_play(base, recording, rounds, renderer)),
+                asyncio.create_task(_play(hub, base, recording, rounds)),
             )
             await asyncio.wait((*tasks, stopped), return_when=asyncio.FIRST_COMPLETED)
             for task in (*tasks, acting):
@@ -95,13 +96,14 @@ def _hello(topics: list[m.Topic] | None = None) -> m.Hello:
     return m.Hello(m.PROTOCOL, CLIENT, __version__, topics=topics)
 
 
-async def _play(url: str, recording: Recording, rounds: int, renderer: TimedRenderer) -> None:
+async def _play(hub: Hub, url: str, recording: Recording, rounds: int) -> None:
     """Play the recording again and again as one person who comes and goes."""
     inputs = [event for event in recording.events() if isinstance(event, SensorInput)]
     if not inputs:
         raise RecordingError(f"{recording.path} holds nothing that a sensor sent: play another")
     length_ns = inputs[-1].originating_ns + PAUSE_NS
     async with join(url, SESSION, "sensor", hello=_hello()) as sensor:
+        room = sensor.welcome.scene.objects
         played = 0
         while rounds == 0 or played < rounds:
             shift_ns = played * length_ns
@@ -114,7 +116,8 @@ async def _play(url: str, recording: Recording, rounds: int, renderer: TimedRend
                 1.0,
             )
             await asyncio.sleep(PAUSE_NS / NS_PER_S)
-            await renderer.restore()
+            for name, state in room.items():
+                hub.sessions[SESSION].change_object(name, state)
             played += 1
 
 

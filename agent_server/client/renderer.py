@@ -37,6 +37,7 @@ class Renderer(Listening[Event]):
         options: Server, session, and what the client is.
         objects: Gives the state of each object as it is shown, to be reconciled; None shows none.
         mirror: Only watch: commands come, and nothing is answered.
+        capabilities: What it can do beside resuming and reporting steps.
         clock: Where to read the time.
         random: Where waiting times come from.
 
@@ -49,6 +50,7 @@ class Renderer(Listening[Event]):
         *,
         objects: Callable[[], Mapping[str, str]] | None = None,
         mirror: bool = False,
+        capabilities: tuple[str, ...] = (),
         clock: Clock | None = None,
         random: Random | None = None,
     ) -> None:
@@ -64,7 +66,7 @@ class Renderer(Listening[Event]):
             welcomed=self._welcome,
             received=self._receive,
             resume=self._resume,
-            capabilities=("resume", "progress"),
+            capabilities=("resume", "progress", *capabilities),
             clock=self._clock,
             random=random,
         )

@@ -17,7 +17,6 @@ class TimedRenderer:
     def __init__(self, renderer: Renderer, scale: float = 1.0) -> None:
         self._renderer = renderer
         self._scale = scale
-        self._initial: dict[str, str] = {}
         self._performing: asyncio.Task[None] | None = None
 
     async def run(self) -> None:
@@ -29,8 +28,6 @@ class TimedRenderer:
         try:
             async for event in self._renderer:
                 match event:
-                    case m.Welcome() if not self._initial:
-                        self._initial = dict(event.scene.objects)
                     case m.CommandMessage():
                         self._cut()
                         self._performing = asyncio.create_task(self._perform(event))
@@ -38,11 +35,6 @@ class TimedRenderer:
                         self._cut()
         finally:
             self._cut()
-
-    async def restore(self) -> None:
-        """Put every object back into the state that it had when the renderer came."""
-        for name, state in self._initial.items():
-            await self._renderer.report(name, state)
 
     async def _perform(self, command: m.CommandMessage) -> None:
         if not self._renderer.start(command.id):

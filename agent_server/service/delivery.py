@@ -116,7 +116,7 @@ class Delivery:
             case m.AckMessage():
                 self._take_ack(message)
             case m.SceneEvent():
-                self._change(ObjectChanged(self._context.now(), message.object, message.state))
+                self.change(ObjectChanged(self._context.now(), message.object, message.state))
 
     def _take_ack(self, message: m.AckMessage) -> None:
         context = self._context
@@ -133,7 +133,12 @@ class Delivery:
             message.command_id,
         )
 
-    def _change(self, event: ObjectChanged) -> None:
+    def change(self, event: ObjectChanged) -> None:
+        """Take over an object's state that somebody set by hand.
+
+        Raises:
+            InvalidInput: If the room has no such object or state.
+        """
         context = self._context
         commands = context.core.change_object(event)
         context.counters["scene_events"] += 1
@@ -145,7 +150,7 @@ class Delivery:
         differences = self._context.core.compare(renderer.hello.objects or {})
         for one in differences:
             if one.kept is Authority.RENDERER:
-                self._change(ObjectChanged(now_ns, one.object, one.renderer))
+                self.change(ObjectChanged(now_ns, one.object, one.renderer))
         renderer.differences = [
             m.Difference(one.object, one.renderer, one.server, one.kept.value)
             for one in differences

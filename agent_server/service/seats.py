@@ -4,13 +4,15 @@ from agent_server.errors import InvalidInput
 from agent_server.protocol.codes import CLOSE_REPLACED
 from agent_server.service.audience import Client
 
+STAND_IN = "stand_in"
+"""Capability of a renderer that gives its place to any other one."""
+
 
 def _may_replace(client: Client, other: Client) -> bool:
-    """Whether a client asked to take over, or is the other one after a broken connection."""
+    """Whether a client asks to take over, is the same again, or the other one only stands in."""
     hello = client.hello
-    return hello.take_over or (
-        hello.instance is not None and hello.instance == other.hello.instance
-    )
+    is_same = hello.instance is not None and hello.instance == other.hello.instance
+    return hello.take_over or is_same or STAND_IN in other.hello.capabilities
 
 
 class Seats:

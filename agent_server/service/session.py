@@ -10,6 +10,7 @@ from agent_server.clock import Clock
 from agent_server.config import Settings
 from agent_server.domain.decision import FacePairing, GateVerdict
 from agent_server.domain.motion import BodyLost
+from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.stamp import NS_PER_MS, NS_PER_S, to_ns
 from agent_server.errors import InferenceError
 from agent_server.protocol import convert
@@ -158,6 +159,14 @@ class Session:
             self._sensing.receive(client, message, self._clock.now_ns())
         else:
             self.delivery.receive(client, message)
+
+    def change_object(self, name: str, state: str) -> None:
+        """Set an object of the room by hand.
+
+        Raises:
+            InvalidInput: If the room has no such object or state.
+        """
+        self.delivery.change(ObjectChanged(self._context.now(), name, state))
 
     # ------------------------------------------------------------------ work
 

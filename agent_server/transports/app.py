@@ -116,6 +116,18 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
             ]
         }
 
+    @app.put("/v1/sessions/{session_id}/objects/{name}")
+    async def set_object(session_id: str, name: str, state: str) -> JSONResponse:
+        """Set an object of a session's room by hand; renderers are told."""
+        session = hub.sessions.get(session_id)
+        if session is None:
+            return JSONResponse({"detail": f"there is no open session {session_id!r}"}, 404)
+        try:
+            session.change_object(name, state)
+        except InvalidInput as error:
+            return JSONResponse({"detail": str(error)}, 422)
+        return JSONResponse({"objects": session.delivery.scene().objects})
+
     @app.get("/v1/stand-in")
     async def stand_in_clip(gesture: str, seed: int = 0, take: int = 0) -> Response:
         """What a made-up person does, for a page that plays without a sensor."""

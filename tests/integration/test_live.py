@@ -305,7 +305,7 @@ async def test_a_client_that_finds_no_server_is_told():
                 pass
 
 
-async def test_a_renderer_without_a_picture_carries_commands_out_and_restores_the_room():
+async def test_a_renderer_without_a_picture_carries_commands_out():
     async with (
         live(settings=OPEN_GATE) as server,
         server.join("monitor") as monitor,
@@ -322,7 +322,7 @@ async def test_a_renderer_without_a_picture_carries_commands_out_and_restores_th
         assert (done.command_id, command.reaction) == ("s/c1", "turn_down_hifi")
         while (await next_of(monitor, m.SceneState)).objects["hifi"] != "low":
             pass
-        await renderer.restore()
+        server.hub.sessions["s"].change_object("hifi", "high")
         while (await next_of(monitor, m.SceneState)).objects["hifi"] != "high":
             pass
         running.cancel()
@@ -354,3 +354,30 @@ async def test_a_session_that_is_opened_anew_has_another_epoch():
         await asyncio.sleep(0.3)
         async with server.join("sensor") as sensor:
             assert sensor.welcome.epoch != first
+
+
+async def test_objects_are_set_by_hand_over_http():
+    async with (
+        live() as server,
+        server.join("renderer") as renderer,
+        httpx.AsyncClient(base_url=server.url) as http,
+    ):
+        path = "/v1/sessions/s/objects/window"
+        answer = await http.put(path, params={"state": "closed"})
+        assert answer.json()["objects"]["window"] == "closed"
+        assert (await next_of(renderer, m.SceneState)).objects["window"] == "closed"
+        wrong = await http.put(path, params={"state": "ajar"})
+        assert (wrong.status_code, "ajar" in wrong.json()["detail"]) == (422, True)
+        assert (await http.put("/v1/sessions/none/objects/window?state=open")).status_code == 404
+
+
+async def test_a_renderer_that_only_stands_in_gives_its_place_away():
+    stand_in = m.Hello(m.PROTOCOL, "t", capabilities=["stand_in"])
+    async with live() as server, server.join("renderer", hello=stand_in) as first:
+        async with server.join("renderer"):
+            with pytest.raises(ConnectionFailed, match=str(CLOSE_REPLACED)):
+                await next_of(first, m.Pong)
+        async with server.join("renderer", hello=stand_in):
+            with pytest.raises(ConnectionFailed, match="another renderer"):
+                async with server.join("renderer"), server.join("renderer"):
+                    pass

@@ -209,17 +209,21 @@ async def test_a_restarted_server_goes_on_with_the_room_and_the_open_command(tmp
 
 
 async def test_a_fresh_renderer_gets_the_command_of_before_the_restart(tmp_path):
-    async with live(settings=settings(tmp_path)) as server:
-        async with server.join("renderer", hello=raw_hello()) as renderer:
-            await gesture(server)
-            command = await next_of(renderer, m.CommandMessage)
-            renderer._socket.transport.abort()
-    async with live(settings=settings(tmp_path)) as server:
-        async with server.join("renderer", hello=raw_hello()) as renderer:
-            again = await next_of(renderer, m.CommandMessage)
-            assert (again.id, again.sequence, again.steps) == (command.id, 1, command.steps)
-            assert again.epoch == renderer.welcome.epoch != command.epoch
-            assert 0 < again.age_ms < again.ttl_ms
+    async with (
+        live(settings=settings(tmp_path)) as server,
+        server.join("renderer", hello=raw_hello()) as renderer,
+    ):
+        await gesture(server)
+        command = await next_of(renderer, m.CommandMessage)
+        renderer._socket.transport.abort()
+    async with (
+        live(settings=settings(tmp_path)) as server,
+        server.join("renderer", hello=raw_hello()) as renderer,
+    ):
+        again = await next_of(renderer, m.CommandMessage)
+        assert (again.id, again.sequence, again.steps) == (command.id, 1, command.steps)
+        assert again.epoch == renderer.welcome.epoch != command.epoch
+        assert 0 < again.age_ms < again.ttl_ms
 
 
 async def test_without_a_folder_a_restart_begins_a_new_ledger_and_running_things_are_cut():

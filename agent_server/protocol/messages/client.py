@@ -72,7 +72,8 @@ class Hello(Message, frozen=True, tag="hello"):
         told(
             "What the client can do: `heartbeat` answers pings, and lets itself be held to it; "
             "`resume` remembers which commands it has carried out; `progress` reports steps; "
-            "`pose_stream` plays streamed poses. Others are noted for people.",
+            "`pose_stream` plays streamed poses; `stand_in` gives its place as a renderer to any "
+            "other. Others are noted for people.",
             max_length=16,
         ),
     ] = []  # noqa: RUF012 - msgspec copies it

@@ -66,7 +66,8 @@ export interface Hello {
   /**
    * What the client can do: `heartbeat` answers pings, and lets itself be held to it; `resume`
    * remembers which commands it has carried out; `progress` reports steps; `pose_stream` plays
-   * streamed poses. Others are noted for people. (1..64 characters, at most 16 items)
+   * streamed poses; `stand_in` gives its place as a renderer to any other. Others are noted for
+   * people. (1..64 characters, at most 16 items)
    */
   readonly capabilities?: readonly string[];
   /**
