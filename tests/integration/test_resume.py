@@ -347,24 +347,36 @@ async def test_a_client_that_promised_to_answer_pings_and_does_not_is_sent_away(
         assert await next_of(simple, m.Ping)
 
 
-async def test_the_server_knows_the_clocks_of_clients_that_answer(monkeypatch):
+async def test_either_side_knows_the_other_ones_clock():
     async with (
         live(settings=settings(heartbeat_s=0.05)) as server,
-        Monitor(Options(server.url, "s"), ["stats", "error"]) as monitor,
+        Monitor(Options(server.url, "s")) as monitor,
     ):
-        messages = aiter(monitor)
-        await event_of(messages, m.Welcome)
+        await event_of(aiter(monitor), m.Welcome)
         await until(lambda: monitor.link.clock_estimate.offset_ns is not None)
         # One machine, one monotonic clock.
         assert abs(monitor.link.clock_estimate.offset_ns) < 50_000_000
         (client,) = server.hub.sessions["s"].audience.clients
         await until(lambda: client.clock.offset_ns is not None)
-        assert abs(client.clock.offset_ns) < 50_000_000
-        ahead = monitor.link._clock.now_ns
-        monkeypatch.setattr(monitor.link._clock, "now_ns", lambda: ahead() + 3600 * 10**9)
-        error = await event_of(messages, m.ErrorMessage)
+        assert abs(client.stats().offset_ms) < 50
+
+
+async def test_a_clock_that_jumps_is_told_to_monitors():
+    hour_ns = 3600 * 10**9
+    async with (
+        live(settings=settings(heartbeat_s=0.05)) as server,
+        server.join("renderer") as renderer,
+        server.join("monitor", hello=m.Hello(m.PROTOCOL, "m", topics=["error"])) as monitor,
+    ):
+        for shift_ns in (0, hour_ns, hour_ns, hour_ns):
+            ping = await next_of(renderer, m.Ping)
+            await renderer.send(m.Pong(ping.sent_ns, ping.sent_ns + shift_ns))
+        error = await next_of(monitor, m.ErrorMessage)
         assert error.code == "clock_jump"
-        assert "3600000 ms" in error.message
+        assert "renderer" in error.message
+        session = server.hub.sessions["s"]
+        assert session.counters["clock_jumps"] == 1
+        (client,) = session.audience.having("renderer")
         assert client.stats().offset_ms == pytest.approx(3.6e6, abs=100)
 
 
