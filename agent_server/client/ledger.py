@@ -8,6 +8,8 @@ from agent_server.protocol.messages import AckMessage, CommandMessage
 
 REMEMBERED = 256
 """Commands that are over and whose end can be said again."""
+LONGEST_REASON = 500
+"""Letters of a reason that the server takes."""
 EXPIRED = "expired"
 PREEMPTED = "preempted"
 
@@ -120,7 +122,7 @@ class CommandLedger:
             return None
         if failure is None:
             return self._end(AckMessage(command_id, "done"))
-        return self._end(AckMessage(command_id, "failed", reason=failure))
+        return self._end(AckMessage(command_id, "failed", reason=failure[:LONGEST_REASON]))
 
     def open_ack(self) -> AckMessage | None:
         """The last word on the command that is not over, to be said again."""

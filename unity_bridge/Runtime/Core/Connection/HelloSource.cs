@@ -1,0 +1,44 @@
+using System;
+using System.Collections.Generic;
+
+namespace AgentServer
+{
+    /// <summary>Makes the first message of every connection.</summary>
+    sealed class HelloSource
+    {
+        static readonly string[] Capabilities = { "heartbeat" };
+        static readonly string[] RendererCapabilities = { "heartbeat", "resume", "progress" };
+
+        readonly ConnectionSettings _settings;
+        readonly string _instance = Guid.NewGuid().ToString("N");
+
+        public HelloSource(ConnectionSettings settings)
+        {
+            _settings = settings;
+        }
+
+        /// <param name="last">The last welcome; null before the first.</param>
+        /// <param name="resume">What a renderer adds; null for other roles.</param>
+        public Hello Make(Welcome last, Func<ResumeState> resume)
+        {
+            ResumeState state = resume == null ? null : resume();
+            return new Hello(
+                ProtocolVersion.Protocol,
+                _settings.ClientName,
+                _settings.ClientVersion,
+                instance: _instance,
+                token: _settings.Token,
+                session: _settings.Session,
+                role: _settings.Role,
+                capabilities: _settings.Role == Role.Renderer ? RendererCapabilities : Capabilities,
+                face: _settings.Face,
+                mirror: _settings.Mirror,
+                takeOver: _settings.TakeOver,
+                topics: _settings.Topics,
+                lastEpoch: last == null ? null : last.Epoch,
+                ledger: state == null ? null : state.Ledger,
+                lastSequence: state == null ? null : state.LastSequence,
+                objects: state == null ? null : state.Objects);
+        }
+    }
+}
