@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: setup demo test lint bench recordings page clean
+.PHONY: setup demo test verify-long lint bench bench-protocol recordings page clean
 
 setup: $(STAMP)
 
@@ -27,6 +27,11 @@ test: page
 	$(BIN)/python -m coverage combine --quiet
 	$(BIN)/python -m coverage report --fail-under=90
 
+verify-long: $(STAMP)
+	$(BIN)/python -m tests.bench.disconnects --language python --count 1000 --json
+	$(BIN)/python -m tests.bench.disconnects --language csharp --count 1000 --json
+	$(BIN)/python -m tests.bench.disconnects --language node --count 1000 --json
+
 lint: $(STAMP)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -38,6 +43,12 @@ bench: $(STAMP)
 	$(BIN)/agent-server bench ingest --json
 	$(BIN)/agent-server bench decision --json
 	$(BIN)/agent-server bench load --sessions 10 --json
+
+bench-protocol: page
+	$(BIN)/python -m tests.bench.command_latency --language python --json
+	$(BIN)/python -m tests.bench.command_latency --language csharp --json
+	$(BIN)/python -m tests.bench.command_latency --language node --json
+	$(BIN)/python -m tests.bench.command_latency --language browser --json
 
 recordings: $(STAMP)
 	$(BIN)/python recorded_streams/make.py

@@ -19,11 +19,17 @@ from agent_server import __version__
 from agent_server.client.backoff import CAP_S, Backoff
 from agent_server.client.once import ConnectionFailed, socket_address
 from agent_server.clock import Clock, SystemClock
+from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import InvalidInput
 from agent_server.protocol import messages as m
 from agent_server.protocol.clock_estimate import ClockEstimate
 from agent_server.protocol.codec import CODECS
-from agent_server.protocol.codes import CLOSE_CODES, CLOSE_WRONG_VERSION, Retry
+from agent_server.protocol.codes import (
+    CLOSE_CODES,
+    CLOSE_NORMAL,
+    CLOSE_WRONG_VERSION,
+    Retry,
+)
 from agent_server.protocol.connection import HEARTBEAT, SILENT_HEARTBEATS
 from agent_server.protocol.inputs import packed
 
@@ -31,6 +37,8 @@ log = logging.getLogger(__name__)
 
 WELCOME_WITHIN_S = 10.0
 MAX_WAITING = 256
+TICK_S = 0.01
+CLOSE_ABNORMAL = 1006
 _RETRY = {code.code: code.retry for code in CLOSE_CODES}
 
 
@@ -173,41 +181,41 @@ class Link:
         except (OSError, WebSocketException, TimeoutError, EOFError) as error:
             self.fault = f"cannot connect to {address}: {error}"
             return Retry.SOON
-        async with socket:
-            try:
-                await self._greet(socket)
-                await self._live(socket)
-            except ConnectionClosed as closed:
-                code = None if closed.rcvd is None else closed.rcvd.code
-                if not self.fault:
-                    self.fault = f"the connection was lost: {closed}"
-                return _RETRY.get(code, Retry.SOON) if code is not None else Retry.SOON
-            except _Given as given:
-                self.fault = str(given)
-                return given.retry
-            finally:
-                self._socket = None
-                self.phase = Phase.WAITING
-        return Retry.SOON
+        try:
+            await self._greet(socket)
+            await self._live(socket)
+        except asyncio.CancelledError:
+            await socket.close(CLOSE_NORMAL)
+            raise
+        except ConnectionClosed as closed:
+            self.fault = self.fault or f"the connection was lost: {closed}"
+        except _Given as given:
+            # No goodbye: the server is to keep the place for the next connection.
+            socket.transport.abort()
+            self.fault = str(given)
+            return given.retry
+        finally:
+            self._socket = None
+            self.phase = Phase.WAITING
+        return _retry_after(socket)
 
     async def _greet(self, socket: ClientConnection) -> None:
         self.phase = Phase.GREETING
         self.fault = ""
-        await socket.send(self._codec.encode(self._hello()))
         try:
             async with asyncio.timeout(WELCOME_WITHIN_S):
+                await socket.send(self._codec.encode(self._hello()))
                 while (answer := self._decode(await socket.recv())) is None:
                     pass
+                if isinstance(answer, m.ErrorMessage):
+                    await socket.wait_closed()
         except TimeoutError:
-            socket.transport.abort()
             raise _Given("no welcome came in time") from None
         match answer:
             case m.Welcome():
                 self._enter(socket, answer)
             case m.ErrorMessage(message=message):
-                self.fault = message
-                await socket.wait_closed()
-                await socket.recv()  # says how it was closed
+                raise _Given(message, _retry_after(socket))
             case _:
                 raise _Given("hello was not answered with welcome")
 
@@ -246,9 +254,10 @@ class Link:
         self._welcomed(welcome)
 
     async def _live(self, socket: ClientConnection) -> None:
-        """Read until the connection ends; heartbeat and writer live as long."""
+        """Read until the connection ends; what keeps it alive lives as long."""
         tasks = (
             asyncio.create_task(self._beat(socket), name="heartbeat"),
+            asyncio.create_task(self._watch(socket), name="silence"),
             asyncio.create_task(self._write(socket), name="writer"),
         )
         try:
@@ -282,11 +291,14 @@ class Link:
             while True:
                 await socket.send(self._codec.encode(m.Ping(self._clock.now_ns())))
                 await asyncio.sleep(self._heartbeat_s)
-                silent_s = (self._clock.now_ns() - self._heard_ns) / 1e9
-                if silent_s > SILENT_HEARTBEATS * self._heartbeat_s:
-                    self.fault = f"nothing was heard for {silent_s:.1f} s"
-                    socket.transport.abort()
-                    return
+
+    async def _watch(self, socket: ClientConnection) -> None:
+        """Give up a connection on which nothing comes, even while sending is stuck in it."""
+        limit_s = SILENT_HEARTBEATS * self._heartbeat_s
+        while (silent_s := (self._clock.now_ns() - self._heard_ns) / NS_PER_S) <= limit_s:  # noqa: ASYNC110
+            await asyncio.sleep(limit_s - silent_s + TICK_S)
+        self.fault = f"nothing was heard for {silent_s:.1f} s"
+        socket.transport.abort()
 
     async def _write(self, socket: ClientConnection) -> None:
         with suppress(ConnectionClosed):
@@ -306,6 +318,11 @@ class Link:
             if error.code == "unknown_type":
                 return None
             raise _Given(f"the server sent what cannot be read: {error}") from error
+
+
+def _retry_after(socket: ClientConnection) -> Retry:
+    """When to come back after a connection that has ended."""
+    return _RETRY.get(socket.close_code or CLOSE_ABNORMAL, Retry.SOON)
 
 
 class _Given(Exception):

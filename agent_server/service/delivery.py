@@ -77,6 +77,7 @@ class Delivery:
         context.journal.append_core(RendererChanged(now_ns, attached=True))
         issued = context.core.set_renderer(True, now_ns)
         self.deliver(issued, now_ns)
+        self._save()
         self._reconcile(renderer, now_ns)
         latest = self._latest
         if latest is None or latest.id != self.scene().command_id or issued:
@@ -104,6 +105,7 @@ class Delivery:
         now_ns = context.now()
         context.journal.append_core(RendererChanged(now_ns, attached=False))
         self.deliver(context.core.set_renderer(False, now_ns), now_ns)
+        self._save()
 
     def receive(self, client: Client, message: m.Message) -> None:
         """Take a renderer's message.
@@ -114,11 +116,11 @@ class Delivery:
         self._context.seats.require_room(client)
         match message:
             case m.AckMessage():
-                self._take_ack(message)
+                self._take_ack(client, message)
             case m.SceneEvent():
                 self.change(ObjectChanged(self._context.now(), message.object, message.state))
 
-    def _take_ack(self, message: m.AckMessage) -> None:
+    def _take_ack(self, client: Client, message: m.AckMessage) -> None:
         context = self._context
         ack = convert.ack_from_message(message, context.now())
         heard = context.core.acknowledge(ack)
@@ -127,6 +129,9 @@ class Delivery:
         self.deliver(heard.commands, ack.stamp_ns)
         if heard.taken:
             self._save()
+        elif message.status == "done":
+            # It was over already, and what the renderer shows of it does not hold.
+            client.outbox.update("scene", self.scene())
         context.audience.show(
             "ack",
             m.AckTelemetry(message.command_id, message.status, message.step, message.reason),

@@ -10,7 +10,6 @@ namespace AgentServer.ConsoleClient
         readonly double _scale;
         readonly IOutput _output;
 
-        IReadOnlyDictionary<string, string> _shown;
         CommandMessage _command;
         int _step;
         long _stepEndsNs;
@@ -24,7 +23,6 @@ namespace AgentServer.ConsoleClient
             _clock = renderer.Connection.Clock;
             _scale = scale;
             _output = output;
-            renderer.Objects = Shown;
             renderer.SceneChanged += OnScene;
             renderer.CommandReceived += OnCommand;
             renderer.CommandCancelled += OnCancelled;
@@ -76,16 +74,7 @@ namespace AgentServer.ConsoleClient
 
         void OnScene(SceneState scene)
         {
-            _shown = scene.Objects;
             _output.Scene(scene);
-        }
-
-        IDictionary<string, string> Shown()
-        {
-            if (_shown == null) return null;
-            var shown = new Dictionary<string, string>();
-            foreach (KeyValuePair<string, string> one in _shown) shown[one.Key] = one.Value;
-            return shown;
         }
     }
 }
