@@ -16,7 +16,6 @@ class Clock(Protocol):
         """Wall-clock time as an ISO 8601 string in UTC, for people and logs only."""
         ...
 
-
     def wall_ns(self) -> int:
         """Wall-clock time in nanoseconds since 1970; it may be set, and jump.
 

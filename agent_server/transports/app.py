@@ -26,8 +26,12 @@ _NO_PAGE = """<!doctype html><meta charset="utf-8"><title>agent-server</title>
 <p>The server is running. Its page has not been built: run <code>make page</code>.</p>"""
 
 
-PAGE_POLICY = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'"
-"""Nothing from elsewhere; WebAssembly may run, which the face networks need."""
+PAGE_POLICY = (
+    "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self' blob:; "
+    "img-src 'self' blob:"
+)
+"""Nothing from elsewhere; WebAssembly may run, which the face networks need, and the pictures
+inside the agent's body are read, which the page makes blobs of."""
 DOCS_POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 """The reference runs nothing and asks for nothing."""
 CLIENT = "client.js"

@@ -2,31 +2,40 @@
 
 import { browserHost } from "./net/browser.ts";
 import { Camera, type CameraState } from "./face/camera.ts";
-import { Connection } from "./net/connection.ts";
+import { Connection, type Client } from "./net/connection.ts";
 import { readDirectory, type Directory } from "./net/directory.ts";
+import { ActLine, type RoomPhase } from "./panels/act.ts";
 import { AffectPanel } from "./panels/affect.ts";
 import { CameraPanel } from "./panels/camera.ts";
 import { GesturePanel } from "./panels/gestures.ts";
 import { Inspector } from "./panels/inspector.ts";
 import { LogPanel } from "./panels/log.ts";
 import { Notice } from "./panels/notice.ts";
+import { PlayPanel } from "./panels/play.ts";
 import { RoomPanel } from "./panels/room.ts";
 import { Counters, StatusStrip } from "./panels/status.ts";
 import type { Place } from "./place.ts";
+import { clipsOf } from "./play/clips.ts";
+import { StandIn, type StandInState } from "./play/stand_in.ts";
 import { jsonCodec } from "./protocol/codec.ts";
+import { Actor } from "./room/actor.ts";
+import type { RoomView } from "./room/view.ts";
 import type { Row } from "./state/log.ts";
 import { Store } from "./state/store.ts";
 import { summaryOf, type Summary } from "./state/summary.ts";
 import { affectNow, decisionNow, isFresh, problemOf, sensorState } from "./state/view.ts";
+import { nextState } from "./state/states.ts";
 import { sentenceCase } from "./state/words.ts";
 import type { Stage } from "./scene3d/stage.ts";
-import { need, setText } from "./ui/dom.ts";
+import { need, setAttribute, setState, setText } from "./ui/dom.ts";
 
 declare const __PAGE_VERSION__: string;
 
 const DIRECTORY_EVERY_MS = 2_500;
 /** Panels follow new telemetry at once, and time alone this often. */
 const REFRESH_MS = 200;
+/** Who the made-up person is. */
+const STAND_IN_SEED = 1;
 
 const byId = (id: string): HTMLElement => need<HTMLElement>(`#${id}`);
 
@@ -41,7 +50,14 @@ export class App {
   readonly #affect = new AffectPanel(byId("affect"), byId("gate-mode"));
   readonly #cameraPanel = new CameraPanel(byId("camera"));
   readonly #camera: Camera;
-  readonly #room = new RoomPanel(byId("room"), byId("modes"));
+  readonly #room = new RoomPanel(byId("room"), byId("modes"), (object) => this.toggle(object));
+  readonly #actLine = new ActLine(byId("act"));
+  readonly #play = new PlayPanel(byId("play"));
+  readonly #standIn: StandIn;
+  readonly #client: Client;
+  #roomPhase: RoomPhase = "loading";
+  #roomView: RoomView | null = null;
+  #actor: Actor | null = null;
   readonly #log = new LogPanel(byId("rows"), byId("announcer"), (row) => this.#inspect(row));
   readonly #inspector = new Inspector(byId("inspector"), () => this.#closeInspector());
   readonly #notice = new Notice(byId("notice"), () => this.#connectAgain());
@@ -65,17 +81,29 @@ export class App {
       version: __PAGE_VERSION__,
       token: place.token,
     };
+    this.#client = client;
     this.#camera = new Camera(place, browserHost, client, this.#cameraPanel.video, () =>
       this.#cameraPanel.render(this.#camera, browserHost.now()),
     );
     this.#cameraPanel.connect(this.#camera);
     this.#cameraPanel.render(this.#camera, browserHost.now());
+    const clips = clipsOf(place.standInUrl, STAND_IN_SEED, (...request) => fetch(...request));
+    this.#standIn = new StandIn(place, client, browserHost, clips, () =>
+      this.#play.render(this.#standIn.state),
+    );
+    this.#play.connect(this.#standIn);
+    this.#play.render(this.#standIn.state);
+    this.#actLine.render(this.#roomPhase, null);
+    byId("resize-body").addEventListener("click", () => this.#resizeBody());
     const { monitorUrl: url, session } = place;
     this.#connection = new Connection(
       { url, session, role: "monitor", client, codec: jsonCodec },
       browserHost,
       {
-        onMessage: (message) => this.#store.apply(message, this.#now),
+        onMessage: (message) => {
+          this.#store.apply(message, this.#now);
+          this.#actor?.hear(message);
+        },
         onUnreadable: ({ message, field }) => {
           const code = "unreadable";
           this.#store.apply({ type: "error", code, message, field, fatal: false }, this.#now);
@@ -96,11 +124,44 @@ export class App {
     }, DIRECTORY_EVERY_MS);
   }
 
+  /** The room is there, and the agent in it: it acts for the session from now on. */
+  enterRoom(room: RoomView): void {
+    this.#roomView = room;
+    this.#roomPhase = "ready";
+    const actor = new Actor(this.#place, this.#client, browserHost, room, () =>
+      this.#actLine.render(this.#roomPhase, actor),
+    );
+    this.#actor = actor;
+    this.#actLine.connect(actor, (isOn) => room.setSound(isOn));
+    this.#actLine.render(this.#roomPhase, actor);
+    actor.start();
+  }
+
+  /** There is no room to see. */
+  missRoom(phase: RoomPhase): void {
+    this.#roomPhase = phase;
+    this.#actLine.render(phase, null);
+  }
+
+  /** Somebody changed an object of the room by hand: it takes its next state. */
+  toggle(object: string): void {
+    const next = nextState(object, this.#store.scene?.value.objects[object]);
+    if (next === null) return;
+    const { sessionUrl, token } = this.#place;
+    const url = new URL(`objects/${encodeURIComponent(object)}`, sessionUrl);
+    url.searchParams.set("state", next);
+    const headers: HeadersInit = token === null ? {} : { authorization: `Bearer ${token}` };
+    void fetch(url, { method: "PUT", headers }).catch(() => {
+      // The connection's own notice says what is wrong.
+    });
+  }
+
   /** Let the page's clock reach `now`, and show what there is to show. */
   advance(now: number): void {
     const dtMs = Math.max(0, now - this.#now);
     this.#now = now;
     this.#showBody(dtMs);
+    this.#roomView?.step(dtMs);
     const { revision } = this.#store;
     if (revision === this.#drawn.revision && now - this.#drawn.at < REFRESH_MS) return;
     this.#drawn = { revision, at: now };
@@ -114,6 +175,14 @@ export class App {
       problem: this.#problem,
       sensor: this.#sensor,
       pictures: this.#stage?.pictures ?? null,
+      room: {
+        phase: this.#roomPhase,
+        part: this.#actor?.part ?? null,
+        playing: this.#actor?.playing ?? null,
+        agent: this.#roomView?.agent ?? null,
+        pictures: this.#roomView?.pictures ?? 0,
+        counts: this.#roomView?.counts ?? null,
+      },
       now: this.#now,
     });
   }
@@ -121,6 +190,11 @@ export class App {
   /** What the page's own camera does. */
   camera(): CameraState {
     return this.#camera.state;
+  }
+
+  /** What the made-up person does. */
+  standIn(): StandInState {
+    return this.#standIn.state;
   }
 
   get #sensor() {
@@ -170,6 +244,15 @@ export class App {
     this.#cameraPanel.render(this.#camera, browserHost.now());
     const isHeld = body !== null && body.gesture !== "idle" && body.outcome !== "unsure";
     setText(this.#spoken, isHeld ? sentenceCase(body.gesture) : "");
+  }
+
+  #resizeBody(): void {
+    const view = byId("body-view");
+    const isLarge = view.dataset["size"] === "large";
+    setState(view, "size", isLarge ? "small" : "large");
+    const button = byId("resize-body");
+    setText(button, isLarge ? "Enlarge" : "Back to the room");
+    setAttribute(button, "aria-expanded", `${!isLarge}`);
   }
 
   /** Somebody does not want to wait, or wants the place back that another client took. */

@@ -1,5 +1,6 @@
 import "./styles/base.css";
 import "./styles/view.css";
+import "./styles/theatre.css";
 import "./styles/camera.css";
 import "./styles/panels.css";
 import "./styles/room.css";
@@ -8,6 +9,7 @@ import "./styles/layout.css";
 
 import { App } from "./app.ts";
 import type { CameraState } from "./face/camera.ts";
+import type { StandInState } from "./play/stand_in.ts";
 import { placeOf } from "./place.ts";
 import { Stage } from "./scene3d/stage.ts";
 import type { Summary } from "./state/summary.ts";
@@ -19,18 +21,22 @@ declare global {
     agentPage: {
       state(): Summary;
       camera(): CameraState;
+      standIn(): StandInState;
       step?(ms: number): void;
     };
   }
 }
 
-function openStage(isStepped: boolean): Stage | null {
+const place = placeOf(location.href);
+const picture = {
+  isCalm: matchMedia("(prefers-reduced-motion: reduce)").matches,
+  pixelRatio: place.isStepped ? 1 : Math.min(devicePixelRatio, 2),
+};
+
+function openStage(): Stage | null {
   const view = need<HTMLElement>("#view");
   try {
-    return new Stage(view, {
-      isCalm: matchMedia("(prefers-reduced-motion: reduce)").matches,
-      pixelRatio: isStepped ? 1 : Math.min(devicePixelRatio, 2),
-    });
+    return new Stage(view, picture);
   } catch {
     view.append(
       h(
@@ -44,8 +50,28 @@ function openStage(isStepped: boolean): Stage | null {
   }
 }
 
-const place = placeOf(location.href);
-const stage = openStage(place.isStepped);
+/** The room comes by itself when it is there; everything else does not wait for it. */
+async function openRoom(app: App): Promise<void> {
+  if (stage === null) {
+    app.missRoom("no_webgl");
+    return;
+  }
+  try {
+    const { RoomView } = await import("./room/view.ts");
+    const room = new RoomView(need<HTMLElement>("#room-view"), {
+      ...picture,
+      adapts: !place.isStepped,
+      onPick: (object) => app.toggle(object),
+    });
+    await room.load(new URL("human.glb", place.serverUrl).href);
+    app.enterRoom(room);
+  } catch (error) {
+    console.error(error);
+    app.missRoom("failed");
+  }
+}
+
+const stage = openStage();
 
 if (place.isStepped) {
   document.documentElement.dataset["stepped"] = "";
@@ -54,19 +80,26 @@ if (place.isStepped) {
   window.agentPage = {
     state: () => app.summary(),
     camera: () => app.camera(),
+    standIn: () => app.standIn(),
     step(ms) {
       now += ms;
       app.advance(now);
     },
   };
   app.start();
+  void openRoom(app);
 } else {
   const app = new App(place, stage, performance.now());
-  window.agentPage = { state: () => app.summary(), camera: () => app.camera() };
+  window.agentPage = {
+    state: () => app.summary(),
+    camera: () => app.camera(),
+    standIn: () => app.standIn(),
+  };
   const frame = (): void => {
     app.advance(performance.now());
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);
   app.start();
+  void openRoom(app);
 }

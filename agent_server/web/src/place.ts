@@ -9,9 +9,15 @@ export interface Place {
   readonly isStepped: boolean;
   /** Whether the camera's pictures are sent even where the page could read the face itself. */
   readonly sendsPictures: boolean;
+  /** Folder of the page on its server. */
+  readonly serverUrl: string;
   readonly monitorUrl: string;
   readonly sensorUrl: string;
   readonly directoryUrl: string;
+  /** What belongs to the session. */
+  readonly sessionUrl: string;
+  /** Where the made-up person's clips are. */
+  readonly standInUrl: string;
   /** Folder of the networks that read a face. */
   readonly modelsUrl: string;
 }
@@ -28,9 +34,12 @@ export function placeOf(address: string): Place {
     token: new URLSearchParams(page.hash.slice(1)).get("token"),
     isStepped: page.searchParams.has("step"),
     sendsPictures: page.searchParams.get("camera") === "jpeg",
+    serverUrl: new URL(".", page).href,
     monitorUrl: socketUrl(page, session, "monitor"),
     sensorUrl: socketUrl(page, session, "sensor"),
+    sessionUrl: new URL(`v1/sessions/${encodeURIComponent(session)}/`, page).href,
     directoryUrl: new URL("v1/sessions", page).href,
+    standInUrl: new URL("v1/stand-in", page).href,
     modelsUrl: new URL("v1/models/", page).href,
   };
 }

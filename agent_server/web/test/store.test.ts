@@ -132,8 +132,16 @@ test("the summary is plain JSON and lets go of what is old", () => {
   store.apply(pose(40), 100);
   store.apply(decision(1, { gesture: "cold", outcome: "gated" }), 100);
   const status = { phase: "live", fault: null, retryAt: null, roundTripMs: 1, offsetMs: 7 } as const;
+  const room = {
+    phase: "loading",
+    part: null,
+    playing: null,
+    agent: null,
+    pictures: 0,
+    counts: null,
+  } as const;
   const at = (now: number) =>
-    summaryOf({ store, status, problem: null, sensor: "live", pictures: 4, now });
+    summaryOf({ store, status, problem: null, sensor: "live", pictures: 4, room, now });
   const fresh = at(200);
   assert.deepEqual(JSON.parse(JSON.stringify(fresh)), fresh);
   assert.equal(fresh.poseNs, 40e6);

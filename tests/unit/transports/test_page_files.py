@@ -51,7 +51,10 @@ async def test_the_runtime_of_the_networks_comes_compressed_and_the_page_may_run
         assert answer.headers["content-encoding"] == "gzip"
         assert answer.content.startswith(b"\0asm")
         policy = (await http.get("/")).headers["content-security-policy"]
-        assert policy == "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'"
+        assert policy == (
+            "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; connect-src 'self' blob:; "
+            "img-src 'self' blob:"
+        )
 
 
 @needs_page

@@ -29,6 +29,8 @@ export interface RendererOptions {
   readonly client: Client;
   /** JSON, unless another coding is given. */
   readonly codec?: Codec;
+  /** What it can do beside resuming and reporting steps. */
+  readonly capabilities?: readonly string[];
   /** Whether to push aside the renderer that acts already. */
   readonly takesOver?: boolean;
   /** What is shown now, asked for each hello; without it the room's state is taken as it is. */
@@ -63,7 +65,7 @@ export class RendererClient {
   constructor(options: RendererOptions, host: Host, events: RendererEvents) {
     this.#host = host;
     this.#events = events;
-    const { server, session, client, codec = jsonCodec, takesOver = false, objects } = options;
+    const { server, session, client, codec = jsonCodec, takesOver = false, objects, capabilities = [] } = options;
     this.#connection = new Connection(
       {
         url: socketUrl(server, session, "renderer"),
@@ -71,7 +73,7 @@ export class RendererClient {
         role: "renderer",
         client,
         codec,
-        capabilities: ["resume", "progress"],
+        capabilities: ["resume", "progress", ...capabilities],
         greeting: () => ({ ...this.#known(), take_over: takesOver, objects: objects?.() ?? null }),
       },
       host,

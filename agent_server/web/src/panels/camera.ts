@@ -47,6 +47,7 @@ export class CameraPanel {
     const isOn = state.phase !== "off" && state.phase !== "failed";
     setState(this.#root, "phase", state.phase);
     setText(this.#words, cameraWords(state, clock));
+    setAttribute(this.#toggle, "title", isOn ? null : cameraWords(state, clock));
     setText(this.#toggle, isOn ? "Stop the camera" : "Use my camera");
     const isLive = state.phase === "running" && state.link === "live";
     this.#takeOver.hidden = state.link !== "taken" && state.link !== "replaced";

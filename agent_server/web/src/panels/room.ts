@@ -22,11 +22,14 @@ export class RoomPanel {
   readonly #status = h("p", { class: "run-status" });
   readonly #steps = h("ol", { class: "steps", "aria-label": "Steps of the command" });
   readonly #step = h("p", { class: "run-step" });
+  readonly #onToggle: (object: string) => void;
   readonly #tiles = h("ul", { class: "tiles" });
   readonly #tile = new Map<string, Tile>();
   #shownCommand: string | null = null;
 
-  constructor(root: HTMLElement, modes: HTMLElement) {
+  /** @param onToggle Somebody wants an object in its next state. */
+  constructor(root: HTMLElement, modes: HTMLElement, onToggle: (object: string) => void) {
+    this.#onToggle = onToggle;
     for (const mode of MODES) {
       const item = h("li", {}, sentenceCase(mode));
       this.#modes.set(mode, item);
@@ -111,9 +114,11 @@ export class RoomPanel {
       const picture = h("span");
       const word = h("span", { class: "tile-state" });
       const title = h("span", { class: "tile-name" }, sentenceCase(name));
-      const root = h("li", { class: "tile" }, picture, title, word);
+      const root = h("button", { type: "button", class: "tile" }, picture, title, word);
+      root.addEventListener("click", () => this.#onToggle(name));
+      setAttribute(root, "title", `Change the ${sentenceCase(name).toLowerCase()} by hand`);
       this.#tile.set(name, { root, picture, word, state: "" });
-      this.#tiles.append(root);
+      this.#tiles.append(h("li", {}, root));
     }
   }
 }

@@ -1,5 +1,6 @@
 /** The page's state as plain values, for tests: `window.agentPage.state()`. */
 
+import type { AgentState } from "../room/agent/agent.ts";
 import type { Status } from "../net/status.ts";
 import type { StatsMessage } from "../protocol/messages.ts";
 import type { Row } from "./log.ts";
@@ -53,6 +54,21 @@ export interface Summary {
   readonly stats: StatsMessage | null;
   /** Pictures that the 3D view has drawn; null where there is no WebGL. */
   readonly pictures: number | null;
+  /** The agent's room. */
+  readonly room: RoomSummary;
+}
+
+export interface RoomSummary {
+  /** `loading`, `ready`, `failed` or `no_webgl`. */
+  readonly phase: string;
+  /** `waiting`, `acting` or `watching`; null before the room is there. */
+  readonly part: string | null;
+  /** Id of the command that the agent is at. */
+  readonly playing: string | null;
+  readonly agent: AgentState | null;
+  readonly pictures: number;
+  /** Triangles that are there, and draw calls of the last picture. */
+  readonly counts: { readonly triangles: number; readonly drawCalls: number } | null;
 }
 
 export function summaryOf(page: {
@@ -61,6 +77,7 @@ export function summaryOf(page: {
   readonly problem: Problem | null;
   readonly sensor: SensorState;
   readonly pictures: number | null;
+  readonly room: RoomSummary;
   readonly now: number;
 }): Summary {
   const { store, status, now } = page;
@@ -103,6 +120,7 @@ export function summaryOf(page: {
     errors: store.errors.map(({ code, message }) => ({ code, message })),
     stats: store.stats,
     pictures: page.pictures,
+    room: page.room,
   };
 }
 
