@@ -28,6 +28,8 @@ MORPHS: dict[str, dict[str, float]] = {
     "mouthOpen": {"mouth-open": 0.6},
 }
 """Name of each morph -> its units and their shares."""
+TONGUE = (0.0, -0.005, -0.010)
+"""How much further than the jaw the tongue goes when the mouth opens, metres."""
 
 
 def morphs(data: MakeHuman, figure: Figure) -> dict[str, Array]:
@@ -37,8 +39,8 @@ def morphs(data: MakeHuman, figure: Figure) -> dict[str, Array]:
         moves[name] = np.zeros_like(data.base)
         for unit, share in units.items():
             moves[name] += figure.scale * share * data.target(f"{UNITS}/{unit}")
-    # MakeHuman leaves the tongue where it was when the jaw drops. It goes with the jaw, and back.
+    # MakeHuman leaves the tongue where it was when the jaw drops.
     opened = moves["mouthOpen"]
     jaw = opened[np.unique(data.groups["helper-lower-teeth"].vertices)].mean(0)
-    opened[np.unique(data.groups["helper-tongue"].vertices)] = jaw + [0.0, -0.005, -0.010]
+    opened[np.unique(data.groups["helper-tongue"].vertices)] = jaw + np.array(TONGUE)
     return moves
