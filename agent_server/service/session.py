@@ -218,13 +218,15 @@ class Session:
         begin_ns = self._clock.now_ns()
         result = self._core.decide(pending, inference.forecast, inference.classification)
         end_ns = self._clock.now_ns()
-        # The command leaves first; what monitors and the recording get can wait.
         self.delivery.deliver(result.commands, window.end_ns)
+        failure = inference.forecast.failure
+        self._journal.append_core(WindowDone(window.end_ns, window.index, failure))
+        if result.commands:
+            # The command leaves first; what monitors get can wait.
+            await asyncio.sleep(0)
         self._avatar.show_forecast(self.id, inference.forecast, window.end_ns)
         self.counters["decisions"] += 1
-        failure = inference.forecast.failure
         self.counters["predictor_failures"] += failure is not None
-        self._journal.append_core(WindowDone(window.end_ns, window.index, failure))
         decided = m.DecisionMessage(
             convert.decision_body(result.decision),
             self._timing(inference, arrival_ns, started_ns, begin_ns, end_ns),

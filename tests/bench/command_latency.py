@@ -7,6 +7,10 @@ server's; ``offset_bound_ms``, half a round trip, is how far off that can be. Wh
 server share a clock, ``direct_ms`` is the same without an estimate, ``offset_error_ms`` how far the
 two are apart, and ``read_ms`` the time until this program has read the line that the callback
 printed: more than the callback took, by a pipe.
+
+``bare_ms`` is the machine's floor: a websocket message between two programs that do nothing else,
+or to the same page, taken right after, while the same person goes on and the server works.
+``added_ms`` is how much later than that a command comes.
 """
 
 import argparse
@@ -19,6 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tests.bench import bare_websocket
 from tests.support.console_clients import LANGUAGES, Missing, console
 from tests.support.observers import Presence, act, watch
 from tests.support.server_process import server_process
@@ -81,7 +86,7 @@ async def arrivals_of_console(language, port, count, may_act, decided_ns):
 
 
 async def arrivals_in_browser(port, count, may_act):
-    """Commands as a page in a real browser has them."""
+    """Commands as a page in a real browser has them, and bare messages there."""
     from tests.support.browser import browsing  # noqa: PLC0415 - it needs a browser
 
     async with browsing(f"http://127.0.0.1:{port}/healthz") as page:
@@ -91,7 +96,8 @@ async def arrivals_in_browser(port, count, may_act):
         may_act.set()
         async with asyncio.timeout(count / COMMANDS_A_SECOND):
             await page.wait_for_function(f"window.arrivals.length >= {count}", timeout=0)
-        return (await page.evaluate("window.arrivals"))[:count]
+        found = (await page.evaluate("window.arrivals"))[:count]
+        return found, await bare_websocket.latencies_in_page_ms(page, count)
 
 
 @asynccontextmanager
@@ -122,11 +128,12 @@ async def measure(language, count):
             await server.start()
             async with gestures(server, may_act, decided_ns):
                 if language == BROWSER:
-                    found = await arrivals_in_browser(server.port, count, may_act)
+                    found, bare = await arrivals_in_browser(server.port, count, may_act)
                 else:
                     found = await arrivals_of_console(
                         language, server.port, count, may_act, decided_ns
                     )
+                    bare = await bare_websocket.latencies_ms(count)
     latency, round_trip = _column(found, "latency_ns"), _column(found, "round_trip_ns")
     figures = {
         "client": language,
@@ -134,12 +141,15 @@ async def measure(language, count):
         "latency_ms": _percentiles(latency),
         "round_trip_ms": _percentiles(round_trip),
         "offset_bound_ms": round(float(np.median(round_trip)) / 2, 3),
+        "bare_ms": _percentiles(bare),
     }
     if "direct_ns" in found[0]:
         direct = _column(found, "direct_ns")
         figures["direct_ms"] = _percentiles(direct)
         figures["offset_error_ms"] = _percentiles(np.abs(latency - direct))
         figures["read_ms"] = _percentiles(_column(found, "read_ns"))
+    shown, bare_ms = figures.get("direct_ms", figures["latency_ms"]), figures["bare_ms"]
+    figures["added_ms"] = {name: round(value - bare_ms[name], 3) for name, value in shown.items()}
     return figures
 
 
