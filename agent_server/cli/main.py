@@ -9,6 +9,7 @@ from rich.markup import escape
 
 from agent_server import __version__
 from agent_server.cli.bench import bench
+from agent_server.cli.config import check_config, config
 from agent_server.cli.convert import convert
 from agent_server.cli.demo import demo
 from agent_server.cli.gestures import gestures
@@ -25,8 +26,9 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, serve, replay, convert, recover, schema):
+for command in (demo, serve, replay, convert, recover, schema, config):
     app.command()(command)
+app.command(name="check-config")(check_config)
 app.add_typer(gestures)
 app.add_typer(bench)
 

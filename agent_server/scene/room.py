@@ -22,7 +22,7 @@ from agent_server.domain.scene import (
 from agent_server.domain.stamp import NS_PER_MS, to_ns
 from agent_server.errors import InvalidInput
 from agent_server.scene.rulebook import RESUME_WORK, Reaction, Rule, Rules
-from agent_server.scene.suggest import suggest
+from agent_server.suggest import suggest
 
 PATIENCE = 2
 """A renderer that says nothing of a command for so many nominal durations has failed it."""

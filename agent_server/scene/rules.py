@@ -21,7 +21,7 @@ from agent_server.scene.rulebook import (
     SceneObject,
     StepKind,
 )
-from agent_server.scene.suggest import suggest
+from agent_server.suggest import suggest
 from agent_server.scene.toml_reader import NAME_FIX, Source, Table, is_name
 
 _TOP_PRIORITY = 1000

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from agent_server.errors import RuleError
-from agent_server.scene.suggest import suggest
-from agent_server.scene.toml_lines import Path, line_of
+from agent_server.suggest import suggest
+from agent_server.toml_lines import Path, line_of
 
 _Kind = TypeVar("_Kind", str, bool, int, list[Any], dict[str, Any])
 

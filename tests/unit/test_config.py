@@ -2,7 +2,9 @@
 
 import pytest
 
-from agent_server.config import Settings, load_settings
+from agent_server.config import Settings, explain, load_settings, mistakes_in
+from agent_server.config.explain import meanings
+from agent_server.config.load import keys, sections
 from agent_server.errors import ConfigError
 
 
@@ -68,3 +70,67 @@ def test_a_wrong_setting_is_refused_by_name(tmp_path, text, named):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(ConfigError, match=r"nowhere\.toml"):
         load_settings(tmp_path / "nowhere.toml")
+
+
+def test_every_mistake_of_a_file_is_named_with_its_line(tmp_path):
+    path = tmp_path / "settings.toml"
+    path.write_text(
+        "[server]\nport = 70000\nhostt = 'a'\n[gate]\nmode = 'sometimes'\n"
+        "[window]\nhop_frames = 0\nmax_gap_ms = 1\n[nope]\na = 1\n"
+    )
+    mistakes = mistakes_in(path)
+    assert sorted(int(one.removeprefix(f"{path}:").partition(":")[0]) for one in mistakes) == [
+        *(2, 3, 5, 7, 8, 9)
+    ]
+    assert any("did you mean 'host'" in one for one in mistakes)
+    assert mistakes_in(path) == mistakes
+    path.write_text("[server]\nport = 1\n[server\n")
+    assert [one.removeprefix(f"{path}:").partition(":")[0] for one in mistakes_in(path)] == ["3"]
+    path.write_text("server = 3\n")
+    assert "write [server]" in mistakes_in(path)[0]
+
+
+def test_the_environment_has_the_last_word(tmp_path):
+    path = tmp_path / "settings.toml"
+    path.write_text("[server]\nport = 1\nhost = '::1'\n")
+    settings = load_settings(
+        path,
+        {
+            "AGENT_SERVER__SERVER__PORT": "9000",
+            "AGENT_SERVER__ACCESS__ORIGINS": "['https://example.org']",
+            "AGENT_SERVER__FACE__RECORD_IMAGES": "true",
+            "AGENT_SERVER__RULES": "room.toml",
+            "AGENT_SERVER_DATA": "is none of ours",
+        },
+    )
+    assert (settings.server.port, settings.server.host) == (9000, "::1")
+    assert settings.access.origins == ("https://example.org",)
+    assert settings.face.record_images
+    assert settings.rules == "room.toml"
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "said"),
+    [
+        ("AGENT_SERVER__SERVER__PORT", "many", "PORT: [server] port: Expected `int`"),
+        ("AGENT_SERVER__SERVER__PROT", "1", "did you mean 'port'"),
+        ("AGENT_SERVER__SEVER__PORT", "1", "did you mean 'server'"),
+        ("AGENT_SERVER__ACCESS__ORIGINS", "['x'", "origins"),
+        ("AGENT_SERVER__ACCESS__ORIGINS", "['example.org']", "write scheme, host and port"),
+        ("AGENT_SERVER__ACCESS__SECRET", "pssst", "unknown key"),
+    ],
+)
+def test_what_is_wrong_in_the_environment_is_named(variable, value, said):
+    with pytest.raises(ConfigError) as caught:
+        load_settings(None, {variable: value})
+    assert said in str(caught.value)
+    assert "pssst" not in str(caught.value)
+
+
+def test_every_key_is_explained_and_the_explanation_is_a_file_of_settings(tmp_path):
+    for name, kind in sections().items():
+        assert set(keys(kind)) <= set(meanings(kind)), name
+    settings = load(tmp_path, "rules = 'a.toml'\n[vmc]\nshow = 'predicted'\n")
+    assert load(tmp_path, explain(settings)) == settings
+    assert load(tmp_path, explain(settings, with_words=False)) == settings
+    assert 'show = "predicted"  # default: "observed"' in explain(settings)

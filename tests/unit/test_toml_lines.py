@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from agent_server.scene.toml_lines import line_of, locate
+from agent_server.toml_lines import line_of, locate
 
 DOCUMENT = '''\
 # a comment = 1
