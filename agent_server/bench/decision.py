@@ -15,6 +15,7 @@ from agent_server.scene.rulebook import Rules
 from agent_server.service.core import Core
 from agent_server.service.models import Models
 from agent_server.stages.classify import classify
+from agent_server.stages.futures import draw_futures
 from agent_server.stages.predict import predict
 
 
@@ -26,9 +27,10 @@ class DecisionResult:
         p50_ms: Median of all stages together.
         p95_ms: Their 95th percentile.
         p99_ms: Their 99th percentile.
-        stages: Percentiles of ``window`` (ingest of the last frame and the window), ``predict``,
-            ``classify`` and ``decide`` (gate, hysteresis and room); and of ``affect``, which reads
-            a face when one comes.
+        stages: Percentiles of ``window`` (ingest of the last frame and the window), ``predict``
+            , ``futures`` (what draws
+            several, nothing where there is one), ``classify`` and ``decide`` (gate,
+            hysteresis and room); and of ``affect``, which reads a face when one comes.
         decisions: How many were measured.
     """
 
@@ -75,14 +77,22 @@ def _run(
                 core.lose_body(job)
                 continue
             marks.append(time.perf_counter_ns())
-            forecast = predict(models.predictor, [job.window])[0]
+            forecasts = predict(models.predictor, [job.window])
             marks.append(time.perf_counter_ns())
-            classification = classify(models.classifier, [job.window], [forecast])[0]
+            if (drawing := models.drawing) is not None:
+                forecasts = draw_futures(
+                    drawing.sampler, drawing.count, drawing.least_quality, [job.window], forecasts
+                )
             marks.append(time.perf_counter_ns())
-            core.decide(job, forecast, classification)
+            classification = classify(models.classifier, [job.window], forecasts)[0]
+            marks.append(time.perf_counter_ns())
+            core.decide(job, forecasts[0], classification)
             marks.append(time.perf_counter_ns())
             for stage, begin, end in zip(
-                ("window", "predict", "classify", "decide"), marks, marks[1:], strict=False
+                ("window", "predict", "futures", "classify", "decide"),
+                marks,
+                marks[1:],
+                strict=False,
             ):
                 times[stage].append((end - begin) / 1e6)
             times["total"].append((marks[-1] - marks[0]) / 1e6)

@@ -11,7 +11,7 @@ from agent_server.bench.face import measure_faces
 from agent_server.bench.ingest import measure_ingest
 from agent_server.bench.load import LoadResult, measure_load
 from agent_server.bench.reactions import measure_reactions, played, recorded
-from agent_server.cli.options import JsonOption, run
+from agent_server.cli.options import FuturesOption, JsonOption, run, settings_with
 from agent_server.config import Settings
 from agent_server.transports.server import load_models, load_room
 
@@ -30,10 +30,11 @@ def ingest(
 @bench.command()
 def decision(
     rounds: Annotated[int, typer.Option(min=1, help="How often to run the stream.")] = 5,
+    futures: FuturesOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """One decision, stage by stage, on one thread."""
-    models = load_models()
+    models = load_models(settings_with(None, futures=futures))
     rules = load_room(Settings(), models)
     _show(measure_decisions(models, rules, rounds), as_json=as_json)
 

@@ -9,10 +9,16 @@ from typing import Annotated, Any, TypeVar
 import msgspec
 import typer
 
-from agent_server.config import ModelSettings, ServerSettings, Settings, load_settings
+from agent_server.config import (
+    AccessSettings,
+    ModelSettings,
+    ServerSettings,
+    Settings,
+    load_settings,
+)
 from agent_server.errors import ConfigError
 
-_Section = TypeVar("_Section", ServerSettings, ModelSettings)
+_Section = TypeVar("_Section", ServerSettings, ModelSettings, AccessSettings)
 
 ConfigOption = Annotated[
     Path | None, typer.Option("--config", "-c", help="TOML file with settings.")
@@ -27,8 +33,19 @@ ClassifierOption = Annotated[
     Path | None,
     typer.Option(metavar="BUNDLE", help="Classifier to use, for example one that was taught."),
 ]
+FuturesOption = Annotated[
+    int | None,
+    typer.Option(metavar="K", help="Futures that a window is classified with; 1 is the forecast."),
+]
 RulesOption = Annotated[
     Path | None, typer.Option(metavar="FILE", help="The room's rules: docs/rules.md.")
+]
+SecretFileOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Secret that tokens are signed with: docs/operations.md."),
+]
+KeysFileOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="TOML file with the hashes of API keys.")
 ]
 
 
@@ -40,7 +57,13 @@ def settings_with(
     state: Path | None = None,
     predictor: Path | None = None,
     classifier: Path | None = None,
+    futures: int | None = None,
     rules: Path | None = None,
+    tls_cert: Path | None = None,
+    tls_key: Path | None = None,
+    secret_file: Path | None = None,
+    keys_file: Path | None = None,
+    insecure: bool | None = None,
 ) -> Settings:
     """Settings from a file, with what the command line names in their place.
 
@@ -51,8 +74,20 @@ def settings_with(
     try:
         return msgspec.structs.replace(
             settings,
-            server=_changed(settings.server, host=host, port=port, state=state),
-            models=_changed(settings.models, predictor=predictor, classifier=classifier),
+            server=_changed(
+                settings.server,
+                host=host,
+                port=port,
+                state=state,
+                tls_cert=tls_cert,
+                tls_key=tls_key,
+            ),
+            access=_changed(
+                settings.access, secret_file=secret_file, keys_file=keys_file, insecure=insecure
+            ),
+            models=_changed(
+                settings.models, predictor=predictor, classifier=classifier, futures=futures
+            ),
             rules=settings.rules if rules is None else str(rules),
         )
     except ValueError as error:

@@ -3,6 +3,7 @@
 import asyncio
 import logging
 import math
+import os
 import sys
 import time
 from collections.abc import Iterable, Iterator
@@ -17,6 +18,7 @@ from agent_server import __version__
 from agent_server.cli.options import (
     ClassifierOption,
     ConfigOption,
+    FuturesOption,
     JsonOption,
     PredictorOption,
     RulesOption,
@@ -40,6 +42,7 @@ from agent_server.transports.server import load_models, load_room
 
 log = logging.getLogger(__name__)
 
+TOKEN_VARIABLE = "AGENT_SERVER_TOKEN"  # noqa: S105 - where it stands, not what it is
 SETTLE_S = 1.0
 """After the last frame was sent, decisions may still come for this long."""
 
@@ -52,11 +55,15 @@ def replay(
     ] = None,
     to: Annotated[
         str | None,
-        typer.Option(metavar="URL", help="Send it to a running server instead."),
+        typer.Option(
+            metavar="URL",
+            help="Send it to a running server instead; AGENT_SERVER_TOKEN holds its token.",
+        ),
     ] = None,
     config: ConfigOption = None,
     classifier: ClassifierOption = None,
     predictor: PredictorOption = None,
+    futures: FuturesOption = None,
     rules: RulesOption = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -69,7 +76,9 @@ def replay(
             raise ConfigError("--speed max and --to do not go together: a live server would skip")
         run(_send(recording, to, factor, show))
         return
-    settings = settings_with(config, predictor=predictor, classifier=classifier, rules=rules)
+    settings = settings_with(
+        config, predictor=predictor, classifier=classifier, futures=futures, rules=rules
+    )
     for decision in _paced(_decide(recording, settings), _factor(speed or "max")):
         show(decision)
 
@@ -109,15 +118,12 @@ def _paced(decisions: Iterable[m.DecisionBody], speed: float) -> Iterator[m.Deci
 
 
 async def _send(recording: Recording, url: str, speed: float, show: Story.Teller) -> None:
-    hello = m.Hello(
-        m.PROTOCOL,
-        "agent-server-replay",
-        __version__,
-        face=_face(recording),
-    )
+    token = os.environ.get(TOKEN_VARIABLE)
+    watch = m.Hello(m.PROTOCOL, "agent-server-replay", __version__, token=token)
+    hello = msgspec.structs.replace(watch, face=_face(recording))
     session = recording.metadata.session
     async with (
-        join(url, session, "monitor") as monitor,
+        join(url, session, "monitor", hello=watch) as monitor,
         join(url, session, "sensor", hello=hello) as sensor,
     ):
         listener = asyncio.create_task(_listen(monitor, show))

@@ -1,6 +1,7 @@
 """``agent-server serve``."""
 
 import json
+import os
 import socket
 from pathlib import Path
 from typing import Annotated
@@ -11,16 +12,28 @@ from rich.console import Console
 from agent_server.cli.options import (
     ClassifierOption,
     ConfigOption,
+    FuturesOption,
     HostOption,
     JsonOption,
+    KeysFileOption,
     PortOption,
     PredictorOption,
     RulesOption,
+    SecretFileOption,
     run,
     settings_with,
 )
+from agent_server.service.auth import Access
 from agent_server.service.hub import Hub
-from agent_server.transports.server import address, bind, build_hub, load_models, serving
+from agent_server.service.secrets import load_access
+from agent_server.transports.server import (
+    address,
+    bind,
+    build_hub,
+    check_exposure,
+    load_models,
+    serving,
+)
 
 
 def serve(
@@ -29,6 +42,7 @@ def serve(
     port: PortOption = None,
     classifier: ClassifierOption = None,
     predictor: PredictorOption = None,
+    futures: FuturesOption = None,
     rules: RulesOption = None,
     record: Annotated[
         Path | None,
@@ -37,6 +51,18 @@ def serve(
     state: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Remember sessions over a restart in this folder."),
+    ] = None,
+    tls_cert: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Certificate chain (PEM), for https.")
+    ] = None,
+    tls_key: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The certificate's private key (PEM).")
+    ] = None,
+    secret_file: SecretFileOption = None,
+    keys_file: KeysFileOption = None,
+    insecure: Annotated[
+        bool | None,
+        typer.Option("--insecure", help="Let anybody in who reaches the port, without tokens."),
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
@@ -48,16 +74,25 @@ def serve(
         state=state,
         predictor=predictor,
         classifier=classifier,
+        futures=futures,
         rules=rules,
+        tls_cert=tls_cert,
+        tls_key=tls_key,
+        secret_file=secret_file,
+        keys_file=keys_file,
+        insecure=insecure,
     )
+    access = load_access(settings.access, os.environ)
+    check_exposure(settings, access)
     hub = build_hub(settings, load_models(settings), record)
-    run(_serve(hub, bind(settings), as_json=as_json), interrupted_status=0)
+    run(_serve(hub, bind(settings), access, as_json=as_json), interrupted_status=0)
 
 
-async def _serve(hub: Hub, listener: socket.socket, *, as_json: bool) -> None:
+async def _serve(hub: Hub, listener: socket.socket, access: Access, *, as_json: bool) -> None:
     console = Console(stderr=True)
-    async with serving(hub, listener) as stopped:
+    here = address(listener, is_secure=hub.settings.server.tls_cert is not None)
+    async with serving(hub, listener, access) as stopped:
         if as_json:
-            print(json.dumps({"address": address(listener)}), flush=True)
-        console.print(f"agent-server listens on [bold]{address(listener)}[/]; Ctrl+C stops it")
+            print(json.dumps({"address": here}), flush=True)
+        console.print(f"agent-server listens on [bold]{here}[/]; Ctrl+C stops it")
         await stopped

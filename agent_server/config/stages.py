@@ -6,6 +6,9 @@ from typing import Literal
 
 from agent_server.config.section import Section, unless
 
+MOST_FUTURES = 16
+"""As many rows are known to have the same bits in a batch as alone."""
+
 
 class WindowSettings(Section, frozen=True):
     """When a second of motion is handed to the models.
@@ -182,15 +185,26 @@ class ModelSettings(Section, frozen=True):
     Attributes:
         predictor: Folder of the bundle that continues motion; None takes the one that ships.
         classifier: Folder of the bundle that names it; None takes the one that ships.
+        futures: How many futures a window is classified with: 1 is the forecast alone, more are
+            the forecast and others that are drawn beside it.
+        sampler: Folder of the bundle that draws them; None takes the one that ships.
+        futures_quality: A drawn future that is less probably real than this is left out.
         folder: Folder within which a running server may be told to take bundles from; None lets
             nobody change its models.
     """
 
     predictor: str | None = None
     classifier: str | None = None
+    futures: int = 1
+    sampler: str | None = None
+    futures_quality: float = 0.5
     folder: str | None = None
 
     def contradictions(self) -> Iterator[str]:
         """What these values break."""
-        for name in self.__struct_fields__:
+        for name in ("predictor", "classifier", "sampler", "folder"):
             yield from unless(getattr(self, name) != "", f"{name} must name a folder")
+        yield from unless(
+            1 <= self.futures <= MOST_FUTURES, f"futures must lie in 1..{MOST_FUTURES}"
+        )
+        yield from unless(0 <= self.futures_quality < 1, "futures_quality must lie in 0..1")

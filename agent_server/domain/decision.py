@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from agent_server.domain.command import Command
+from agent_server.domain.gesture import Spread
 from agent_server.domain.motion import Quality
 
 
@@ -104,6 +105,7 @@ class Decision:
         outcome: What it came to.
         reason: One sentence for people.
         command: The command, or None.
+        spread: How far several futures disagree, or None where there is the forecast alone.
     """
 
     id: str
@@ -123,3 +125,4 @@ class Decision:
     outcome: Outcome
     reason: str
     command: Command | None
+    spread: Spread | None = None

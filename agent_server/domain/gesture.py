@@ -12,16 +12,33 @@ GESTURES: tuple[str, ...] = (*DISCOMFORTS, HELLO, IDLE)
 
 
 @dataclass(frozen=True, slots=True)
+class Spread:
+    """How far the futures of one window disagree.
+
+    Attributes:
+        futures: How many were classified, the forecast among them.
+        left_out: How many were drawn and left out for their quality.
+        deviations: Shape (C,), read-only: standard deviation of each class's probability.
+    """
+
+    futures: int
+    left_out: int
+    deviations: Float32
+
+
+@dataclass(frozen=True, slots=True)
 class Classification:
-    """What the classifier makes of a window and its forecast.
+    """What the classifier makes of a window and its forecast, or of several futures on average.
 
     Attributes:
         labels: One name a class.
         probabilities: Shape (C,), read-only, sum 1.
+        spread: How far several futures disagree, or None where there is the forecast alone.
     """
 
     labels: tuple[str, ...]
     probabilities: Float32
+    spread: Spread | None = None
 
     @property
     def best(self) -> str:

@@ -37,6 +37,26 @@ class Predictor(Model, Protocol):
         ...
 
 
+class Sampler(Model, Protocol):
+    """Draws several futures of a motion, always the same ones for the same motion."""
+
+    def draw(self, seen: Float32, count: int) -> tuple[Float32, Float32]:
+        """Draw futures of one window.
+
+        Args:
+            seen: Shape (25, 9, 3), normalised.
+            count: How many, K.
+
+        Returns:
+            Futures, shape (K, 50, 9, 3), in the same frame, and how probably each is a real
+            motion, shape (K,), in [0, 1].
+
+        Raises:
+            InferenceError: If the model fails or gives something that is not finite.
+        """
+        ...
+
+
 class Classifier(Model, Protocol):
     """Names a motion."""
 

@@ -74,6 +74,24 @@ class Window:
 
 
 @dataclass(frozen=True, slots=True)
+class Futures:
+    """What else may follow a window, beside what is expected.
+
+    Attributes:
+        positions: Shape (K, 50, 9, 3), read-only, metres in the camera frame: those of good
+            quality, K may be 0.
+        quality: Shape (K,), read-only, in [0, 1]: how probably each is a real motion.
+        drawn: How many were drawn.
+        source: Name of the bundle that drew them.
+    """
+
+    positions: Float32
+    quality: Float32
+    drawn: int
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
 class Forecast:
     """The two seconds that are expected to follow a window.
 
@@ -81,11 +99,13 @@ class Forecast:
         positions: Shape (50, 9, 3), read-only, metres in the camera frame.
         source: Name of the bundle that made it, or ``last_frame`` when it stood in.
         failure: Why the predictor could not be used, or None.
+        futures: What else may follow, or None where nothing was drawn.
     """
 
     positions: Float32
     source: str
     failure: str | None = None
+    futures: Futures | None = None
 
 
 @dataclass(frozen=True, slots=True)

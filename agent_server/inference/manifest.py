@@ -17,7 +17,7 @@ MODEL_FILE = "model.onnx"
 GOLDEN_FILE = "golden.npz"
 CARD_FILE = "CARD.md"
 MANIFEST_FILE = "manifest.json"
-SkeletonName = Literal["core9", "h36m22", "cmu25"]
+SkeletonName = Literal["core9", "h36m22", "cmu25", "kinect15"]
 HASHED_FILES = (MODEL_FILE, GOLDEN_FILE, CARD_FILE)
 
 
@@ -71,7 +71,8 @@ class MotionManifest(Manifest, frozen=True):
     """The manifest of a model of motion.
 
     Attributes:
-        task: ``predict`` (seen -> future positions) or ``classify`` (motion -> probabilities).
+        task: ``predict`` (seen -> future positions), ``sample`` (seen and the index of a draw ->
+            future positions and quality) or ``classify`` (motion -> probabilities).
         skeleton: ``core9``, the one that the server runs, or that of a research model.
         rate_hz: Frames a second of input and output.
         input_frames: Frames the model takes.
@@ -80,9 +81,10 @@ class MotionManifest(Manifest, frozen=True):
         normaliser: ``navel_last_seen``: metres, origin at the navel of the last seen frame;
             ``root``: metres, origin at the root, which neither moves nor turns.
         training: How it was made.
+        draws: Futures that a sampler can draw of one motion.
     """
 
-    task: Literal["predict", "classify"]
+    task: Literal["predict", "sample", "classify"]
     skeleton: SkeletonName
     rate_hz: int
     input_frames: int
@@ -90,6 +92,7 @@ class MotionManifest(Manifest, frozen=True):
     labels: list[str]
     normaliser: Literal["navel_last_seen", "root"]
     training: Training
+    draws: int = 0
 
 
 class Origin(msgspec.Struct, frozen=True):

@@ -1,10 +1,11 @@
 """Model bundles on onnxruntime. The only module that imports it."""
 
 from pathlib import Path
-from typing import Generic
+from typing import Any, Generic
 
 import numpy as np
 import onnxruntime as ort
+from numpy.typing import NDArray
 
 from agent_server.domain.arrays import Float32
 from agent_server.domain.gesture import IDLE
@@ -60,7 +61,7 @@ class OnnxModel(Generic[KindOfManifest]):
             )
         except Exception as error:  # onnxruntime has no common base of its errors
             raise BundleError(f"{folder / MODEL_FILE} cannot be loaded: {error}") from error
-        self._input: str = self._session.get_inputs()[0].name
+        self._inputs: list[str] = [given.name for given in self._session.get_inputs()]
         self._outputs: list[str] = [output.name for output in self._session.get_outputs()]
         self._replay_golden(folder / GOLDEN_FILE)
 
@@ -87,10 +88,11 @@ class OnnxModel(Generic[KindOfManifest]):
             return self._run(batch)[0]
         return np.concatenate([self._run(batch[i : i + 1])[0] for i in range(len(batch))])
 
-    def _run(self, batch: Float32) -> list[Float32]:
-        """All outputs for one input, in the graph's order."""
+    def _run(self, *given: NDArray[Any]) -> list[Float32]:
+        """All outputs for all inputs, both in the graph's order."""
+        feed = dict(zip(self._inputs, given, strict=True))
         try:
-            results: list[Float32] = self._session.run(self._outputs, {self._input: batch})
+            results: list[Float32] = self._session.run(self._outputs, feed)
         except Exception as error:  # onnxruntime has no common base of its errors
             raise InferenceError(f"{self.name} failed: {error}") from error
         # NaN and infinity survive a sum, and a sum is cheaper than a look at each value.
@@ -101,12 +103,12 @@ class OnnxModel(Generic[KindOfManifest]):
     def _replay_golden(self, path: Path) -> None:
         try:
             with np.load(path, allow_pickle=False) as golden:
-                given = golden[self._input]
+                given = [golden[name] for name in self._inputs]
                 expected = [golden[name] for name in self._outputs]
         except (OSError, KeyError, ValueError) as error:
             raise BundleError(f"{path} cannot be read: {error}") from error
         try:
-            rows = [self._run(given[i : i + 1]) for i in range(len(given))]
+            rows = [self._run(*(each[i : i + 1] for each in given)) for i in range(len(given[0]))]
         except InferenceError as error:
             raise BundleError(
                 f"{path}: the model does not run on its golden input: {error}"
@@ -160,6 +162,33 @@ class OnnxPredictor(_MotionModel):
     def predict(self, seen: Float32) -> Float32:
         """Predict two seconds for every row of a batch."""
         return self._rows(seen)
+
+
+class OnnxSampler(_MotionModel):
+    """A bundle that draws futures: seen and the index of a draw -> future and quality.
+
+    What is drawn lies in the bundle: the same index gives the same future of a motion.
+
+    Args:
+        folder: The bundle.
+        count: How many futures of a motion will be asked for.
+    """
+
+    frames = (SEEN_FRAMES, PREDICTED_FRAMES)
+
+    def __init__(self, folder: Path, count: int) -> None:
+        super().__init__(folder, "sample")
+        if self.manifest.draws < count:
+            raise BundleError(
+                f"{folder} can draw {self.manifest.draws} futures, {count} are asked for: set "
+                "futures in [models] lower, or name another bundle as sampler"
+            )
+
+    def draw(self, seen: Float32, count: int) -> tuple[Float32, Float32]:
+        """Futures of one window (25, 9, 3), in one batch, and the quality of each."""
+        batch = np.repeat(seen[None], count, axis=0)
+        future, quality = self._run(batch, np.arange(count))
+        return future, quality
 
 
 class OnnxClassifier(_MotionModel):

@@ -1,6 +1,7 @@
 """Between the wire and the domain. Everything that comes from outside is checked here."""
 
 import struct
+from collections.abc import Iterable
 from functools import lru_cache
 from itertools import chain
 
@@ -10,7 +11,8 @@ from agent_server.domain.affect import AffectSample
 from agent_server.domain.arrays import Float32, Float64
 from agent_server.domain.command import Ack, AckStatus, Command
 from agent_server.domain.decision import Decision, SceneVerdict
-from agent_server.domain.motion import Forecast
+from agent_server.domain.gesture import Spread
+from agent_server.domain.motion import Forecast, Futures
 from agent_server.domain.scene import SceneSnapshot
 from agent_server.domain.skeleton import CoreFrame, SkeletonFrame
 from agent_server.errors import InvalidInput
@@ -21,6 +23,9 @@ JOINT_DECIMALS = 4
 """Joints are rounded to this many decimals of their unit (0.1 mm of metres) before anything
 sees them: a twentieth of a sensor's noise, and it makes the wire, the stages and a recording
 agree to the bit."""
+
+FUTURES_EVERY = 5
+"""Of futures beside the forecast monitors get every fifth frame: they are drawn faintly."""
 
 MAX_COORDINATE_M = 50.0
 """No joint is farther from its sensor."""
@@ -125,9 +130,17 @@ def pose_message(frame: CoreFrame) -> m.PoseMessage:
 
 
 def forecast_message(window: int, end_ns: int, forecast: Forecast) -> m.ForecastMessage:
-    """The expected motion for a monitor, rounded to a millimetre."""
+    """The expected motion for a monitor, and others that may come, rounded to a millimetre."""
     positions = forecast.positions.astype(np.float64).round(3).tolist()
-    return m.ForecastMessage(window, end_ns, forecast.source, positions)
+    futures = forecast.futures
+    others = [] if futures is None else _future_bodies(futures)
+    return m.ForecastMessage(window, end_ns, forecast.source, positions, others)
+
+
+def _future_bodies(futures: Futures) -> list[m.FutureBody]:
+    some = futures.positions[:, FUTURES_EVERY - 1 :: FUTURES_EVERY].astype(np.float64).round(3)
+    quality = futures.quality.astype(np.float64).round(4)
+    return [m.FutureBody(*each) for each in zip(quality.tolist(), some.tolist(), strict=True)]
 
 
 def scene_message(snapshot: SceneSnapshot) -> m.SceneState:
@@ -211,6 +224,18 @@ def decision_body(decision: Decision) -> m.DecisionBody:
         outcome=decision.outcome.value,
         reason=decision.reason,
         command=None if decision.command is None else command_body(decision.command),
+        futures=(
+            None
+            if decision.spread is None
+            else _futures_body(decision.spread, decision.probabilities)
+        ),
+    )
+
+
+def _futures_body(spread: Spread, labels: Iterable[str]) -> m.FuturesBody:
+    rows = zip(labels, spread.deviations, strict=True)
+    return m.FuturesBody(
+        spread.futures, spread.left_out, {label: round(float(sd), 4) for label, sd in rows}
     )
 
 

@@ -6,11 +6,12 @@ what the renderer says, and give commands. A live session runs models between th
 replay does the same without waiting, and so comes to the same decisions.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from agent_server.config import Settings
 from agent_server.domain.affect import AffectSample, Calibrated, Calibration
+from agent_server.domain.arrays import Float64
 from agent_server.domain.command import Ack, Command, Ending
 from agent_server.domain.decision import Decision, GateVerdict, Outcome, SceneVerdict
 from agent_server.domain.face import Face, GazeSample
@@ -106,8 +107,19 @@ class Core:
         """
         self._gate.push(sample)
 
-    def look(self, face: Face) -> tuple[AffectSample, Calibrated | None]:
-        """Take a face and read affect from it.
+    def read(self, faces: Sequence[Face]) -> list[Float64]:
+        """What the models make of faces, for :meth:`look`; nothing changes by it.
+
+        Raises:
+            InvalidInput: If no model reads the kind of one.
+            InferenceError: If a model fails.
+        """
+        return self._affect.read(faces)
+
+    def look(
+        self, face: Face, estimate: Float64 | None = None
+    ) -> tuple[AffectSample, Calibrated | None]:
+        """Take a face and read affect from it, unless :meth:`read` has done so.
 
         Returns:
             What was read, and what a calibration came to that ended with it.
@@ -117,7 +129,7 @@ class Core:
             InferenceError: If the model fails.
         """
         self._gate.require_later(face.originating_ns)
-        sample, calibrated = self._affect.push(face)
+        sample, calibrated = self._affect.push(face, estimate)
         self._gate.push(sample)
         return sample, calibrated
 
@@ -181,6 +193,7 @@ class Core:
             outcome=outcome,
             reason=reason,
             command=command,
+            spread=classification.spread,
         )
         return Result(decision, due if command is None else (*due, command))
 

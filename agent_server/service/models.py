@@ -3,7 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from agent_server.domain.model import AffectModel, Classifier, FaceNetwork, Model, Predictor
+from agent_server.domain.model import (
+    AffectModel,
+    Classifier,
+    FaceNetwork,
+    Model,
+    Predictor,
+    Sampler,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,6 +22,21 @@ class FaceNetworks:
 
 
 @dataclass(frozen=True, slots=True)
+class Drawing:
+    """How several futures are drawn.
+
+    Attributes:
+        sampler: Draws them.
+        count: Futures of a window, the forecast among them: 2 or more.
+        least_quality: Drawn futures that are less probably real are left out.
+    """
+
+    sampler: Sampler
+    count: int
+    least_quality: float
+
+
+@dataclass(frozen=True, slots=True)
 class Models:
     """The models in use.
 
@@ -23,12 +45,14 @@ class Models:
         classifier: Names it.
         affect: What a face is given as (``mesh``, ``points68``, ``blendshapes``) -> its model.
         face: Networks for images, or None where images are not taken.
+        drawing: How futures are drawn beside the forecast, or None where it is alone.
     """
 
     predictor: Predictor
     classifier: Classifier
     affect: Mapping[str, AffectModel] = field(default_factory=dict)
     face: FaceNetworks | None = None
+    drawing: Drawing | None = None
 
     @property
     def by_task(self) -> tuple[tuple[str, Model], ...]:
@@ -36,8 +60,12 @@ class Models:
         faces: tuple[tuple[str, Model], ...] = ()
         if self.face is not None:
             faces = (("face", self.face.detector), ("face", self.face.mesh))
+        drawing: tuple[tuple[str, Model], ...] = ()
+        if self.drawing is not None:
+            drawing = (("futures", self.drawing.sampler),)
         return (
             ("predict", self.predictor),
+            *drawing,
             ("classify", self.classifier),
             *(("affect", model) for model in self.affect.values()),
             *faces,

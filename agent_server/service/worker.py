@@ -16,6 +16,7 @@ from agent_server.domain.motion import Forecast, Window
 from agent_server.errors import InferenceError
 from agent_server.service.models import Models
 from agent_server.stages.classify import classify
+from agent_server.stages.futures import draw_futures
 from agent_server.stages.predict import predict
 
 log = logging.getLogger(__name__)
@@ -30,7 +31,7 @@ class Inference:
     Attributes:
         forecast: The expected motion.
         classification: Class probabilities.
-        predict_ms: Time of the predictor's batch, in milliseconds.
+        predict_ms: Time of the predictor's batch and of other futures, in milliseconds.
         classify_ms: Time of the classifier's batch, in milliseconds.
     """
 
@@ -48,6 +49,10 @@ def infer(models: Models, windows: Sequence[Window]) -> list[Inference]:
     """
     start = time.perf_counter_ns()
     forecasts = predict(models.predictor, windows)
+    if (drawing := models.drawing) is not None:
+        forecasts = draw_futures(
+            drawing.sampler, drawing.count, drawing.least_quality, windows, forecasts
+        )
     between = time.perf_counter_ns()
     classifications = classify(models.classifier, windows, forecasts)
     predict_ms = (between - start) / 1e6
@@ -83,6 +88,11 @@ class InferenceWorker:
         self._waiting: list[tuple[Window, asyncio.Future[Inference]]] = []
         self._wake = asyncio.Event()
         self.largest_batch = 0
+
+    @property
+    def waiting(self) -> int:
+        """Windows that wait for the thread."""
+        return len(self._waiting)
 
     async def infer(self, window: Window) -> Inference:
         """Run the models on a window when the thread is free.

@@ -2,6 +2,7 @@
 
 import asyncio
 import socket
+import ssl
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -19,19 +20,24 @@ from agent_server.inference.runtime import (
     OnnxClassifier,
     OnnxFaceNetwork,
     OnnxPredictor,
+    OnnxSampler,
 )
 from agent_server.scene.rulebook import Rules
 from agent_server.scene.rules import default_rules, load_rules
+from agent_server.service.auth import OPEN, Access
 from agent_server.service.hub import Hub
-from agent_server.service.models import FaceNetworks, Models
+from agent_server.service.models import Drawing, FaceNetworks, Models
 from agent_server.service.recorder import recorder
 from agent_server.service.store import FolderStore
 from agent_server.service.vmc import open_avatar
 from agent_server.transports.app import create_app
+from agent_server.transports.door import Door
+from agent_server.transports.guard import is_loopback
 
 GOODBYE_S = 0.1
 PREDICTOR = "ma_wgan_server"
 CLASSIFIER = "interformer_server"
+SAMPLER = "hp_gan_server"
 DETECTOR = "face_detector"
 MESHES = {"full": "face_mesh", "fast": "face_mesh_fast"}
 AFFECT_SOURCES = ("mesh", "points68", "blendshapes")
@@ -50,6 +56,10 @@ def load_models(settings: Settings | None = None) -> Models:
     settings = settings or Settings()
     chosen = settings.models
     mesh = MESHES[settings.face.mesh]
+    drawing = None
+    if chosen.futures > 1:
+        sampler = OnnxSampler(Path(chosen.sampler or shipped / SAMPLER), chosen.futures - 1)
+        drawing = Drawing(sampler, chosen.futures, chosen.futures_quality)
     return Models(
         OnnxPredictor(Path(chosen.predictor or shipped / PREDICTOR)),
         OnnxClassifier(Path(chosen.classifier or shipped / CLASSIFIER)),
@@ -57,6 +67,7 @@ def load_models(settings: Settings | None = None) -> Models:
         FaceNetworks(
             OnnxFaceNetwork(shipped / DETECTOR, "detector"), OnnxFaceNetwork(shipped / mesh, "mesh")
         ),
+        drawing,
     )
 
 
@@ -133,10 +144,38 @@ def bind(settings: Settings) -> socket.socket:
     return listener
 
 
-def address(listener: socket.socket) -> str:
-    """The HTTP address of a bound socket."""
+def address(listener: socket.socket, *, is_secure: bool = False) -> str:
+    """The HTTP address of a bound socket, with TLS or without."""
     host, port = listener.getsockname()[:2]
-    return f"http://[{host}]:{port}" if ":" in host else f"http://{host}:{port}"
+    scheme = "https" if is_secure else "http"
+    return f"{scheme}://[{host}]:{port}" if ":" in host else f"{scheme}://{host}:{port}"
+
+
+def check_exposure(settings: Settings, access: Access) -> None:
+    """Refuse to listen beyond this machine without tokens, unless that is said to be meant.
+
+    Raises:
+        ConfigError: With the ways out; also if the certificate cannot be used.
+    """
+    server = settings.server
+    if server.tls_cert is not None and server.tls_key is not None:
+        try:
+            ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(
+                server.tls_cert, server.tls_key
+            )
+        except OSError as error:
+            raise ConfigError(
+                f"TLS cannot be served with {server.tls_cert} and {server.tls_key}: {error}; give "
+                "a certificate chain and its key in PEM, without a password"
+            ) from error
+    if access.is_guarded or settings.access.insecure or is_loopback(server.host):
+        return
+    raise ConfigError(
+        f"{server.host} can be reached from other machines, and no tokens are asked for: anybody "
+        "could send frames, see the person and command the agent. Name a secret or keys "
+        "(`agent-server token --new-secret FILE`, then --secret-file FILE), listen on 127.0.0.1, "
+        "or say --insecure if that is meant"
+    )
 
 
 class _Server(uvicorn.Server):
@@ -154,20 +193,35 @@ class _Server(uvicorn.Server):
 
 
 @asynccontextmanager
-async def serving(hub: Hub, listener: socket.socket) -> AsyncIterator[asyncio.Task[None]]:
+async def serving(
+    hub: Hub, listener: socket.socket, access: Access = OPEN
+) -> AsyncIterator[asyncio.Task[None]]:
     """Serve while the context lasts; entered when connections are taken.
+
+    Args:
+        hub: The sessions.
+        listener: Where connections come in.
+        access: Who is admitted.
 
     Yields:
         A task that ends when the process is asked to stop by a signal.
     """
+    settings = hub.settings
+    http, websocket = Door(settings).protocols()
     server = _Server(
         hub,
         uvicorn.Config(
-            create_app(hub, assets.page()),
-            ws="websockets-sansio",
+            create_app(hub, assets.page(), access),
+            http=http,
+            ws=websocket,
+            ssl_certfile=settings.server.tls_cert,
+            ssl_keyfile=settings.server.tls_key,
+            forwarded_allow_ips=list(settings.access.trusted_proxies),
+            server_header=False,
             # The protocol's own limit answers with a sentence; this one only guards memory.
             ws_max_size=2 * hub.settings.server.max_image_bytes,
             ws_per_message_deflate=False,
+            log_config=None,
             log_level="warning",
             lifespan="on",
             timeout_graceful_shutdown=2,

@@ -10,6 +10,7 @@ import typer
 
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.affect.config import Source
+from models.hp_gan.config import TrainConfig as HpGanConfig
 from models.interformer.config import TrainConfig as InterformerConfig
 from models.ma_wgan.config import TrainConfig as MaWganConfig
 from models.ops.session import OnnxModel
@@ -34,7 +35,7 @@ CACHE = Path("runs/cache")
 ARTIFACTS = Path(__file__).parents[1] / "artifacts"
 PREDICTOR = ARTIFACTS / "ma_wgan_server"
 CLASSIFIER = ARTIFACTS / "interformer_server"
-C = TypeVar("C", MaWganConfig, SimlpeConfig, InterformerConfig)
+C = TypeVar("C", MaWganConfig, SimlpeConfig, HpGanConfig, InterformerConfig)
 
 
 def model_of(bundle: Path) -> OnnxModel:

@@ -22,6 +22,8 @@ from models.cli.options import (
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import TRAINED, cut, join
 from models.evaluation.affect import affect_measures
+from models.hp_gan.config import CONFIGS as HP_GAN_CONFIGS
+from models.hp_gan.train import train as train_several
 from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
 from models.interformer.train import train as train_classifier
 from models.ma_wgan.config import CONFIGS as MA_WGAN_CONFIGS
@@ -99,6 +101,22 @@ def train_simlpe(
     chosen = configured(SIMLPE_CONFIGS, config, steps)
     run = Run(out, chosen, seed, _command("simlpe", config, seed, steps), resume)
     train_baseline(chosen, run, data, cache)
+
+
+@app.command("hp_gan")
+def train_hp_gan(
+    data: DataOption,
+    out: OutOption,
+    config: ConfigOption = "server",
+    seed: SeedOption = 0,
+    resume: ResumeOption = False,
+    steps: StepsOption = None,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Train a GAN that draws several futures, with the network that judges them."""
+    chosen = configured(HP_GAN_CONFIGS, config, steps)
+    run = Run(out, chosen, seed, _command("hp_gan", config, seed, steps), resume)
+    train_several(chosen, run, data, cache)
 
 
 @app.command("interformer")

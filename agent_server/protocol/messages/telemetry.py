@@ -40,6 +40,19 @@ class PoseMessage(Message, frozen=True, tag="pose"):
     ]
 
 
+class FutureBody(Part, frozen=True):
+    """One of several futures that are drawn beside the forecast."""
+
+    quality: Annotated[Ratio, told("How probably it is a real motion.")]
+    positions: Annotated[
+        list[list[Point]],
+        told(
+            "10 frames at 5 Hz of the nine core joints' x, y, z, in the camera frame; the first "
+            "is 0.2 s after the window."
+        ),
+    ]
+
+
 class ForecastMessage(Message, frozen=True, tag="forecast"):
     """The motion that is expected after a window."""
 
@@ -50,6 +63,10 @@ class ForecastMessage(Message, frozen=True, tag="forecast"):
         list[list[Point]],
         told("50 frames at 25 Hz of the nine core joints' x, y, z, in the camera frame."),
     ]
+    futures: Annotated[
+        list[FutureBody],
+        told("What else may follow, where several futures are drawn; none of low quality."),
+    ] = []  # noqa: RUF012 - msgspec copies it
 
 
 class AffectTelemetry(Message, frozen=True, tag="affect_state"):
@@ -160,7 +177,18 @@ class CommandBody(Part, frozen=True):
     ]
 
 
-class DecisionBody(Part, frozen=True):
+class FuturesBody(Part, frozen=True):
+    """How far several futures of the window disagree."""
+
+    classified: Annotated[Count, told("Futures that were classified, the forecast among them.")]
+    left_out: Annotated[Count, told("Drawn futures that were left out for their quality.")]
+    spread: Annotated[
+        dict[str, Ratio],
+        told("Standard deviation of each gesture's probability over the futures."),
+    ]
+
+
+class DecisionBody(Part, frozen=True, omit_defaults=True):
     """A decision with its reasons. Deterministic: the line of a decision log."""
 
     id: Annotated[CommandId, told("Identity: session and index.")]
@@ -173,7 +201,9 @@ class DecisionBody(Part, frozen=True):
     quality: Annotated[QualityBody, told("How far the window could be trusted.")]
     forecast: Annotated[Label, told("Bundle that made the forecast, or `last_frame`.")]
     forecast_failure: Annotated[str, told("Why the predictor could not be used.")] | None
-    probabilities: Annotated[dict[str, Ratio], told("Probability of each gesture.")]
+    probabilities: Annotated[
+        dict[str, Ratio], told("Probability of each gesture, over several futures their mean.")
+    ]
     gesture: Annotated[Name, told("What is held to be going on.")]
     gate: Annotated[GateBody, told("What the affect gate said.")]
     scene: Annotated[SceneBody, told("What the room said, if it was asked.")] | None
@@ -186,6 +216,9 @@ class DecisionBody(Part, frozen=True):
     ]
     reason: Annotated[str, told("Why, in a sentence.")]
     command: Annotated[CommandBody, told("The command that follows.")] | None
+    futures: (
+        Annotated[FuturesBody, told("How far several futures disagree; absent for one.")] | None
+    ) = None
 
 
 class Timing(Part, frozen=True):

@@ -26,6 +26,7 @@ export const CLOSE_TOO_LARGE = 1009;
 export const CLOSE_INTERNAL = 1011;
 export const CLOSE_BAD_HELLO = 4400;
 export const CLOSE_WRONG_VERSION = 4401;
+export const CLOSE_NOT_ADMITTED = 4403;
 export const CLOSE_HELLO_TIMEOUT = 4408;
 export const CLOSE_REPLACED = 4409;
 export const CLOSE_SILENT = 4410;
@@ -71,6 +72,12 @@ export const CLOSE_CODES: Readonly<Record<number, CloseCode>> = {
     advice: "use a client of the server's version",
     retry: "later",
   },
+  4403: {
+    name: "not_admitted",
+    meaning: "no token, one that is wrong or has expired, or one that does not go so far",
+    advice: "get a token of this role and session",
+    retry: "never",
+  },
   4408: {
     name: "hello_timeout",
     meaning: "no hello in time",
@@ -103,7 +110,7 @@ export const CLOSE_CODES: Readonly<Record<number, CloseCode>> = {
   },
   4429: {
     name: "full",
-    meaning: "the server takes no more sessions",
+    meaning: "the server takes no more sessions, or the session no more clients",
     advice: "try later",
     retry: "later",
   },
@@ -239,8 +246,24 @@ export const ERROR_CODES: Readonly<Record<string, ErrorCode>> = {
     meaning: "the object has no such state",
     advice: "name one that it has",
   },
+  no_token: {
+    meaning: "this server wants a token",
+    advice: "send `token` in hello",
+  },
+  bad_token: {
+    meaning: "the token is not valid",
+    advice: "get another one",
+  },
+  token_expired: {
+    meaning: "the token has expired",
+    advice: "get another one",
+  },
+  not_allowed: {
+    meaning: "the token goes for another role or session",
+    advice: "get one for this",
+  },
   full: {
-    meaning: "the server takes no more sessions",
+    meaning: "no more sessions, or clients of one, are taken",
     advice: "try later",
   },
   stopping: {

@@ -336,6 +336,16 @@ const PoseMessage: RecordLayout = {
   ],
 };
 
+const FutureBody: RecordLayout = {
+  name: "FutureBody",
+  tag: null,
+  omitsDefaults: false,
+  fields: [
+    { name: "quality", kind: ["float", 0, 1] },
+    { name: "positions", kind: ["list", ["list", ["tuple", [["float", -60000, 60000], ["float", -60000, 60000], ["float", -60000, 60000]]], null], null] },
+  ],
+};
+
 const ForecastMessage: RecordLayout = {
   name: "ForecastMessage",
   tag: "forecast",
@@ -345,6 +355,7 @@ const ForecastMessage: RecordLayout = {
     { name: "originating_ns", kind: ["int", 0, 9007199254740991] },
     { name: "source", kind: ["str", 0, 64] },
     { name: "positions", kind: ["list", ["list", ["tuple", [["float", -60000, 60000], ["float", -60000, 60000], ["float", -60000, 60000]]], null], null] },
+    { name: "futures", kind: ["list", ["record", FutureBody], null], default: [] },
   ],
 };
 
@@ -447,10 +458,21 @@ const CommandBody: RecordLayout = {
   ],
 };
 
+const FuturesBody: RecordLayout = {
+  name: "FuturesBody",
+  tag: null,
+  omitsDefaults: false,
+  fields: [
+    { name: "classified", kind: ["int", 0, 9007199254740991] },
+    { name: "left_out", kind: ["int", 0, 9007199254740991] },
+    { name: "spread", kind: ["map", ["float", 0, 1], null] },
+  ],
+};
+
 const DecisionBody: RecordLayout = {
   name: "DecisionBody",
   tag: null,
-  omitsDefaults: false,
+  omitsDefaults: true,
   fields: [
     { name: "id", kind: ["str", 1, 160] },
     { name: "index", kind: ["int", 0, 9007199254740991] },
@@ -469,6 +491,7 @@ const DecisionBody: RecordLayout = {
     { name: "outcome", kind: ["str", 0, 64] },
     { name: "reason", kind: ["str", 0, null] },
     { name: "command", kind: ["record", CommandBody], isNullable: true },
+    { name: "futures", kind: ["record", FuturesBody], isNullable: true, default: null },
   ],
 };
 

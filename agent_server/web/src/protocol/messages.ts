@@ -455,6 +455,17 @@ export interface PoseMessage {
   readonly joints: readonly JointSample[];
 }
 
+/** One of several futures that are drawn beside the forecast. */
+export interface FutureBody {
+  /** How probably it is a real motion. (0..1) */
+  readonly quality: number;
+  /**
+   * 10 frames at 5 Hz of the nine core joints' x, y, z, in the camera frame; the first is 0.2 s
+   * after the window. (m, -60000..60000)
+   */
+  readonly positions: readonly (readonly Point[])[];
+}
+
 /** The motion that is expected after a window. */
 export interface ForecastMessage {
   readonly type: "forecast";
@@ -468,6 +479,8 @@ export interface ForecastMessage {
    * 50 frames at 25 Hz of the nine core joints' x, y, z, in the camera frame. (m, -60000..60000)
    */
   readonly positions: readonly (readonly Point[])[];
+  /** What else may follow, where several futures are drawn; none of low quality. */
+  readonly futures: readonly FutureBody[];
 }
 
 /** The affect that the gate goes by. */
@@ -599,6 +612,16 @@ export interface CommandBody {
   readonly ttl_ms: number;
 }
 
+/** How far several futures of the window disagree. */
+export interface FuturesBody {
+  /** Futures that were classified, the forecast among them. (count, 0..2^53 - 1) */
+  readonly classified: number;
+  /** Drawn futures that were left out for their quality. (count, 0..2^53 - 1) */
+  readonly left_out: number;
+  /** Standard deviation of each gesture's probability over the futures. (0..1) */
+  readonly spread: Readonly<Record<string, number>>;
+}
+
 /** A decision with its reasons. Deterministic: the line of a decision log. */
 export interface DecisionBody {
   /** Identity: session and index. (1..160 characters) */
@@ -621,7 +644,7 @@ export interface DecisionBody {
   readonly forecast: string;
   /** Why the predictor could not be used. */
   readonly forecast_failure: string | null;
-  /** Probability of each gesture. (0..1) */
+  /** Probability of each gesture, over several futures their mean. (0..1) */
   readonly probabilities: Readonly<Record<string, number>>;
   /** What is held to be going on. (1..64 characters) */
   readonly gesture: string;
@@ -638,6 +661,8 @@ export interface DecisionBody {
   readonly reason: string;
   /** The command that follows. */
   readonly command: CommandBody | null;
+  /** How far several futures disagree; absent for one. */
+  readonly futures: FuturesBody | null;
 }
 
 /** Where the time of one decision went, and when it was made. */

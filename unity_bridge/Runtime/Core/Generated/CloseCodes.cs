@@ -19,6 +19,10 @@ namespace AgentServer
         public const int BadHello = 4400;
         /// <summary>Another major version.</summary>
         public const int WrongVersion = 4401;
+        /// <summary>
+        /// No token, one that is wrong or has expired, or one that does not go so far.
+        /// </summary>
+        public const int NotAdmitted = 4403;
         /// <summary>No hello in time.</summary>
         public const int HelloTimeout = 4408;
         /// <summary>Another client took over, or the place is taken.</summary>
@@ -31,7 +35,7 @@ namespace AgentServer
         public const int TooSlow = 4413;
         /// <summary>Errors that went on.</summary>
         public const int TooManyErrors = 4422;
-        /// <summary>The server takes no more sessions.</summary>
+        /// <summary>The server takes no more sessions, or the session no more clients.</summary>
         public const int Full = 4429;
 
         /// <summary>Every close code of the server.</summary>
@@ -43,12 +47,13 @@ namespace AgentServer
             new CloseCode(Internal, "internal", "the session failed", "connect again and resume", Retry.Soon),
             new CloseCode(BadHello, "bad_hello", "wrong address or first message", "mend it", Retry.Later),
             new CloseCode(WrongVersion, "wrong_version", "another major version", "use a client of the server's version", Retry.Later),
+            new CloseCode(NotAdmitted, "not_admitted", "no token, one that is wrong or has expired, or one that does not go so far", "get a token of this role and session", Retry.Never),
             new CloseCode(HelloTimeout, "hello_timeout", "no hello in time", "say hello at once", Retry.Soon),
             new CloseCode(Replaced, "replaced", "another client took over, or the place is taken", "ask to take over, or stay away", Retry.Never),
             new CloseCode(Silent, "silent", "a client with the capability heartbeat was not heard for 2.5 heartbeats", "connect again and resume", Retry.Soon),
             new CloseCode(TooSlow, "too_slow", "too many commands or answers waited", "read faster, or ask for fewer topics", Retry.Soon),
             new CloseCode(TooManyErrors, "too_many_errors", "errors that went on", "mend it", Retry.Later),
-            new CloseCode(Full, "full", "the server takes no more sessions", "try later", Retry.Later),
+            new CloseCode(Full, "full", "the server takes no more sessions, or the session no more clients", "try later", Retry.Later),
         };
 
         /// <summary>The entry of a code; null for one that the server does not send.</summary>

@@ -27,7 +27,8 @@ namespace AgentServer
             SceneBody scene,
             string outcome,
             string reason,
-            CommandBody command)
+            CommandBody command,
+            FuturesBody futures = null)
         {
             Id = id ?? throw new ArgumentNullException(nameof(id));
             Index = index;
@@ -46,6 +47,7 @@ namespace AgentServer
             Outcome = outcome ?? throw new ArgumentNullException(nameof(outcome));
             Reason = reason ?? throw new ArgumentNullException(nameof(reason));
             Command = command;
+            Futures = futures;
         }
 
         /// <summary>Identity: session and index. Range: 1 to 160 characters.</summary>
@@ -86,7 +88,7 @@ namespace AgentServer
         /// <summary>Why the predictor could not be used. May be null.</summary>
         public string ForecastFailure { get; }
 
-        /// <summary>Probability of each gesture.</summary>
+        /// <summary>Probability of each gesture, over several futures their mean.</summary>
         public IReadOnlyDictionary<string, double> Probabilities { get; }
 
         /// <summary>What is held to be going on. Range: 1 to 64 characters.</summary>
@@ -110,6 +112,9 @@ namespace AgentServer
         /// <summary>The command that follows. May be null.</summary>
         public CommandBody Command { get; }
 
+        /// <summary>How far several futures disagree; absent for one. May be null.</summary>
+        public FuturesBody Futures { get; }
+
         static readonly string[] Required = { "id", "index", "window", "start_ns", "end_ns", "body_id", "models", "quality", "forecast", "forecast_failure", "probabilities", "gesture", "gate", "scene", "outcome", "reason", "command" };
 
         internal static DecisionBody Read(WireReader reader)
@@ -131,6 +136,7 @@ namespace AgentServer
             string outcomeValue = default(string);
             string reasonValue = default(string);
             CommandBody commandValue = default(CommandBody);
+            FuturesBody futuresValue = null;
             uint seen = 0;
             string key;
             reader.BeginMap();
@@ -206,18 +212,23 @@ namespace AgentServer
                         commandValue = reader.Null() ? null : CommandBody.Read(reader);
                         seen |= 0x10000;
                         break;
+                    case "futures":
+                        futuresValue = reader.Null() ? null : FuturesBody.Read(reader);
+                        break;
                     default:
                         reader.Skip();
                         break;
                 }
             }
             reader.Require(seen, Required);
-            return new DecisionBody(idValue, indexValue, windowValue, startNsValue, endNsValue, bodyIdValue, modelsValue, qualityValue, forecastValue, forecastFailureValue, probabilitiesValue, gestureValue, gateValue, sceneValue, outcomeValue, reasonValue, commandValue);
+            return new DecisionBody(idValue, indexValue, windowValue, startNsValue, endNsValue, bodyIdValue, modelsValue, qualityValue, forecastValue, forecastFailureValue, probabilitiesValue, gestureValue, gateValue, sceneValue, outcomeValue, reasonValue, commandValue, futuresValue);
         }
 
         internal void Write(WireWriter writer)
         {
-            writer.BeginMap(17);
+            int count = 17;
+            if (Futures != null) count++;
+            writer.BeginMap(count, 18);
             writer.Key("id");
             writer.Str(Id);
             writer.Key("index");
@@ -255,6 +266,11 @@ namespace AgentServer
             writer.Key("command");
             if (Command == null) writer.Null();
             else Command.Write(writer);
+            if (Futures != null)
+            {
+                writer.Key("futures");
+                Futures.Write(writer);
+            }
             writer.EndMap();
         }
     }

@@ -71,7 +71,15 @@ namespace AgentServer
         public const string UnknownObject = "unknown_object";
         /// <summary>The object has no such state.</summary>
         public const string UnknownState = "unknown_state";
-        /// <summary>The server takes no more sessions.</summary>
+        /// <summary>This server wants a token.</summary>
+        public const string NoToken = "no_token";
+        /// <summary>The token is not valid.</summary>
+        public const string BadToken = "bad_token";
+        /// <summary>The token has expired.</summary>
+        public const string TokenExpired = "token_expired";
+        /// <summary>The token goes for another role or session.</summary>
+        public const string NotAllowed = "not_allowed";
+        /// <summary>No more sessions, or clients of one, are taken.</summary>
         public const string Full = "full";
         /// <summary>The server is stopping.</summary>
         public const string Stopping = "stopping";
@@ -125,7 +133,11 @@ namespace AgentServer
             new ErrorCode(ZeroVector, "a gaze without a direction", "send the direction of the eyes"),
             new ErrorCode(UnknownObject, "the rule file has no such object", "name one that it has"),
             new ErrorCode(UnknownState, "the object has no such state", "name one that it has"),
-            new ErrorCode(Full, "the server takes no more sessions", "try later"),
+            new ErrorCode(NoToken, "this server wants a token", "send `token` in hello"),
+            new ErrorCode(BadToken, "the token is not valid", "get another one"),
+            new ErrorCode(TokenExpired, "the token has expired", "get another one"),
+            new ErrorCode(NotAllowed, "the token goes for another role or session", "get one for this"),
+            new ErrorCode(Full, "no more sessions, or clients of one, are taken", "try later"),
             new ErrorCode(Stopping, "the server is stopping", "connect again and resume"),
             new ErrorCode(Silent, "nothing was heard for 2.5 heartbeats", "answer pings"),
             new ErrorCode(ClassifierFailed, "telemetry: a window got no decision", "the next one may"),

@@ -12,12 +12,14 @@ namespace AgentServer
             long window,
             long originatingNs,
             string source,
-            IReadOnlyList<IReadOnlyList<Point3>> positions)
+            IReadOnlyList<IReadOnlyList<Point3>> positions,
+            IReadOnlyList<FutureBody> futures = null)
         {
             Window = window;
             OriginatingNs = originatingNs;
             Source = source ?? throw new ArgumentNullException(nameof(source));
             Positions = positions ?? throw new ArgumentNullException(nameof(positions));
+            Futures = futures ?? Array.Empty<FutureBody>();
         }
 
         /// <inheritdoc/>
@@ -41,6 +43,11 @@ namespace AgentServer
         /// </summary>
         public IReadOnlyList<IReadOnlyList<Point3>> Positions { get; }
 
+        /// <summary>
+        /// What else may follow, where several futures are drawn; none of low quality.
+        /// </summary>
+        public IReadOnlyList<FutureBody> Futures { get; }
+
         static readonly string[] Required = { "window", "originating_ns", "source", "positions" };
 
         internal static ForecastMessage Read(WireReader reader)
@@ -49,6 +56,7 @@ namespace AgentServer
             long originatingNsValue = default(long);
             string sourceValue = default(string);
             IReadOnlyList<IReadOnlyList<Point3>> positionsValue = default(IReadOnlyList<IReadOnlyList<Point3>>);
+            IReadOnlyList<FutureBody> futuresValue = null;
             uint seen = 0;
             string key;
             reader.BeginMap();
@@ -72,18 +80,23 @@ namespace AgentServer
                         positionsValue = reader.List(int.MaxValue, item => item.List(int.MaxValue, inner => Point3.Read(inner, 60000.0)));
                         seen |= 0x8;
                         break;
+                    case "futures":
+                        futuresValue = reader.List(int.MaxValue, item => FutureBody.Read(item));
+                        break;
                     default:
                         reader.Skip();
                         break;
                 }
             }
             reader.Require(seen, Required);
-            return new ForecastMessage(windowValue, originatingNsValue, sourceValue, positionsValue);
+            return new ForecastMessage(windowValue, originatingNsValue, sourceValue, positionsValue, futuresValue);
         }
 
         internal override void Write(WireWriter writer)
         {
-            writer.BeginMap(5);
+            int count = 5;
+            if (Futures.Count != 0) count++;
+            writer.BeginMap(count, 6);
             writer.Key("type");
             writer.Str("forecast");
             writer.Key("window");
@@ -94,6 +107,11 @@ namespace AgentServer
             writer.Str(Source);
             writer.Key("positions");
             writer.List(Positions, (item, itemValue) => item.List(itemValue, (inner, innerValue) => innerValue.Write(inner)));
+            if (Futures.Count != 0)
+            {
+                writer.Key("futures");
+                writer.List(Futures, (item, itemValue) => itemValue.Write(item));
+            }
             writer.EndMap();
         }
     }
