@@ -1,6 +1,5 @@
 """The command line ``agent-server``. One file a group of commands."""
 
-import logging
 from typing import Annotated
 
 import typer
@@ -17,7 +16,9 @@ from agent_server.cli.recover import recover
 from agent_server.cli.replay import replay
 from agent_server.cli.schema import schema
 from agent_server.cli.serve import serve
+from agent_server.cli.token import token
 from agent_server.errors import AgentServerError
+from agent_server.logs import LogFormat, set_up_logs
 
 app = typer.Typer(
     name="agent-server",
@@ -46,12 +47,12 @@ def _options(
         typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version."),
     ] = False,
     verbose: Annotated[bool, typer.Option("--verbose", "-v", help="Log more.")] = False,
+    log_format: Annotated[
+        LogFormat, typer.Option(help="Log lines for people, or JSON objects for machines.")
+    ] = "text",
 ) -> None:
     del version
-    logging.basicConfig(
-        level=logging.INFO if verbose else logging.WARNING,
-        format="%(asctime)s %(levelname)-7s %(name)s: %(message)s",
-    )
+    set_up_logs(log_format, verbose=verbose)
 
 
 def main() -> None:

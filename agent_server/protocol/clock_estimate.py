@@ -32,6 +32,7 @@ class ClockEstimate:
         self.offset_ns: int | None = None
         self.round_trip_ns: int | None = None
         self.jumps = 0
+        self._first_offset_ns = 0
         self._samples: deque[_Sample] = deque(maxlen=SAMPLES)
         self._outliers = 0
 
@@ -68,11 +69,17 @@ class ClockEstimate:
         self._begin(sample)
         return away_ns
 
+    @property
+    def drift_ns(self) -> int:
+        """By how much the offset has changed since the first pong, or the last jump."""
+        return 0 if self.offset_ns is None else self.offset_ns - self._first_offset_ns
+
     def _begin(self, sample: _Sample) -> None:
         self._outliers = 0
         self._samples.clear()
         self._samples.append(sample)
         self.offset_ns, self.round_trip_ns = sample.offset_ns, sample.round_trip_ns
+        self._first_offset_ns = sample.offset_ns
 
     def _follow(self, sample: _Sample) -> None:
         self._samples.append(sample)

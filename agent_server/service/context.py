@@ -1,6 +1,7 @@
 """What the parts of one session share."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from agent_server.clock import Clock
@@ -10,6 +11,7 @@ from agent_server.service.core import Core
 from agent_server.service.journal import Journal
 from agent_server.service.seats import Seats
 from agent_server.service.timeline import Timeline
+from agent_server.service.watching import Watcher
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +24,7 @@ class Context:
         clock: Where to read the time.
         journal: Where everything that enters and leaves the core is written down.
         avatar: Where its person is shown.
+        watchers: Who is told of its decisions.
         audience: Its clients.
         seats: Who of them may speak for what.
         timeline: Its time.
@@ -33,6 +36,7 @@ class Context:
     clock: Clock
     journal: Journal
     avatar: Avatar
+    watchers: Sequence[Watcher] = ()
     audience: Audience = field(default_factory=Audience)
     seats: Seats = field(default_factory=Seats)
     timeline: Timeline = field(default_factory=Timeline)

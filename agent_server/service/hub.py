@@ -10,6 +10,7 @@ from agent_server import __version__
 from agent_server.clock import Clock
 from agent_server.config import Settings
 from agent_server.domain.gesture import IDLE
+from agent_server.errors import InferenceError
 from agent_server.protocol import messages as m
 from agent_server.protocol.codes import CLOSE_GOING_AWAY, CLOSE_INTERNAL
 from agent_server.scene.rulebook import Rules
@@ -17,9 +18,13 @@ from agent_server.service.audience import Client
 from agent_server.service.avatar import Avatar, NoAvatar
 from agent_server.service.camera import Eyes
 from agent_server.service.journal import Journal, NoJournal
+from agent_server.service.loop_lag import measure_lag
+from agent_server.service.metrics import Metrics
 from agent_server.service.models import Models
 from agent_server.service.session import Opening, Session
 from agent_server.service.store import MemoryStore, SessionStore
+from agent_server.service.warm_up import warm_up
+from agent_server.service.watching import DecisionLog, Watcher
 from agent_server.service.worker import InferenceWorker
 
 log = logging.getLogger(__name__)
@@ -44,6 +49,11 @@ class Hub:
         open_journal: Where a session of a given id is written down; None writes nothing.
         store: Where sessions are remembered over a restart; None remembers them in memory.
         avatar: Where persons are shown; None shows nobody. It is closed with the hub.
+        watchers: Who is told of decisions, beside the log and the figures.
+
+    Attributes:
+        metrics: Figures of all sessions.
+        warm: Set when the models have seen their first windows.
     """
 
     def __init__(
@@ -55,6 +65,7 @@ class Hub:
         open_journal: Callable[[str], Journal] | None = None,
         store: SessionStore | None = None,
         avatar: Avatar | None = None,
+        watchers: Sequence[Watcher] = (),
     ) -> None:
         self.settings = settings
         self.clock = clock
@@ -66,6 +77,9 @@ class Hub:
         self._worker = InferenceWorker(models)
         self._eyes = None if models.face is None else Eyes(models.face)
         self._sessions: dict[str, Session] = {}
+        self.metrics = Metrics(self._sessions, self._worker)
+        self._watchers = (self.metrics, DecisionLog(), *watchers)
+        self.warm = asyncio.Event()
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._endings: dict[str, asyncio.TimerHandle] = {}
         self._group: asyncio.TaskGroup | None = None
@@ -80,20 +94,35 @@ class Hub:
         """Whether sessions can be opened."""
         return self._group is not None
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether a session would be served at full speed: the server is warm and not stopping."""
+        return self.is_running and self.warm.is_set()
+
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:
         """Serve while the context lasts."""
         async with asyncio.TaskGroup() as group:
             self._group = group
             worker = group.create_task(self._worker.run(), name="inference")
+            lag = group.create_task(measure_lag(self.metrics.lagged), name="loop lag")
+            warming = group.create_task(self._warm_up(), name="warm-up")
             try:
                 yield
             finally:
                 self.stop()
                 self._avatar.close()
-                worker.cancel()
+                for task in (worker, lag, warming):
+                    task.cancel()
                 if self._eyes is not None:
                     self._eyes.close()
+
+    async def _warm_up(self) -> None:
+        try:
+            await warm_up(self._worker, self.settings, self._rules)
+        except InferenceError as error:
+            log.error("the models failed on the first windows: %s", error)
+        self.warm.set()
 
     def stop(self) -> None:
         """Send everybody away and admit nobody any more."""
@@ -189,6 +218,7 @@ class Hub:
             self._store,
             self._avatar,
             self._eyes,
+            self._watchers,
         )
         self._sessions[session_id] = session
         self._tasks[session_id] = self._group.create_task(
@@ -223,6 +253,7 @@ class Hub:
         session = self._sessions.pop(session_id)
         self._endings.pop(session_id, None)
         session.close(code, reason)
+        self.metrics.closed(session)
         self._tasks.pop(session_id).cancel()
         self._store.release(session_id)
         log.info("session %s: closed: %s", session_id, reason)

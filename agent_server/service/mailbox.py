@@ -67,6 +67,11 @@ class Outbox:
         self._ready.set()
         return was_waiting
 
+    @property
+    def waiting(self) -> int:
+        """How many messages wait, commands and telemetry."""
+        return len(self._ordered) + len(self._latest)
+
     def close(self, code: int, reason: str) -> None:
         """Ask the writer to close the connection after what waits in order was sent."""
         if self.close_code is None:

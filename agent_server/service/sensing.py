@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 
 from agent_server.domain.affect import Calibrated
 from agent_server.domain.face import Face
+from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import InferenceError, InvalidInput
 from agent_server.protocol import convert, faces
 from agent_server.protocol import messages as m
@@ -156,6 +157,7 @@ class Sensing:
 
     def _look(self, face: Face, client: Client) -> None:
         context = self._context
+        began_ns = context.clock.now_ns()
         try:
             sample, calibrated = context.core.look(face)
         except InferenceError as error:
@@ -163,6 +165,8 @@ class Sensing:
             log.error("session %s: no affect from a face: %s", context.id, error)
             context.audience.show("error", m.ErrorMessage("affect_failed", str(error)))
             return
+        for watcher in context.watchers:
+            watcher.read_affect((context.clock.now_ns() - began_ns) / NS_PER_S)
         context.counters["faces"] += 1
         context.journal.append_input(face)
         context.avatar.show_face(context.id, face)

@@ -3,7 +3,7 @@
 import asyncio
 import logging
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from agent_server.clock import Clock
@@ -26,11 +26,14 @@ from agent_server.service.delivery import Delivery
 from agent_server.service.journal import Journal
 from agent_server.service.sensing import Sensing
 from agent_server.service.store import Saved, SessionStore
+from agent_server.service.watching import Decided, Watcher
 from agent_server.service.worker import Inference, InferenceWorker
 
 log = logging.getLogger(__name__)
 
 TICK_S = 0.25
+RECENT = 25
+"""So many of its last decisions, five seconds, a session keeps for those who look after it."""
 QUIET_NS = NS_PER_S
 """Ticks let time pass only after this long without input; while input comes, it is the clock."""
 
@@ -70,6 +73,7 @@ class Session:
         store: Where it is remembered over a restart.
         avatar: Where the person is shown.
         eyes: What finds faces in images, or None where images are not taken.
+        watchers: Who is told of its decisions.
     """
 
     def __init__(
@@ -84,6 +88,7 @@ class Session:
         store: SessionStore,
         avatar: Avatar,
         eyes: Eyes | None = None,
+        watchers: Sequence[Watcher] = (),
     ) -> None:
         self.id = session
         self._worker = worker
@@ -91,9 +96,10 @@ class Session:
         self._journal = journal
         self._avatar = avatar
         self._core = Core(session, settings, rules, worker.models)
-        self._context = Context(session, self._core, clock, journal, avatar)
+        self._context = Context(session, self._core, clock, journal, avatar, watchers)
         self.audience = self._context.audience
         self.counters = self._context.counters
+        self.recent: deque[Decided] = deque(maxlen=RECENT)
         self.delivery = Delivery(
             self._context, store, opening.ledger, opening.epoch, to_ns(settings.server.resume_s)
         )
@@ -118,6 +124,7 @@ class Session:
         if acts:
             self._context.seats.claim_room(client)
         self.audience.clients.append(client)
+        self.counters["resumes"] += client.hello.ledger == self.delivery.ledger
         if acts:
             self.delivery.hand_over(client)
         if client.role == "sensor":
@@ -131,6 +138,8 @@ class Session:
             for_good: Whether it said goodbye; else it may come back and resume.
         """
         self.audience.clients.remove(client)
+        if client.role == "monitor":
+            self.counters["missed_telemetry"] += client.outbox.missed
         self._context.timeline.forget(id(client))
         if client.role == "sensor":
             self._sensing.update_face(is_open=False)
@@ -224,6 +233,19 @@ class Session:
         if result.commands:
             # The command leaves first; what monitors get can wait.
             await asyncio.sleep(0)
+        seen = Decided(
+            self.id,
+            result.decision,
+            arrival_ns,
+            started_ns,
+            begin_ns,
+            end_ns,
+            inference.predict_ms,
+            inference.classify_ms,
+        )
+        self.recent.append(seen)
+        for watcher in self._context.watchers:
+            watcher.decided(seen)
         self._avatar.show_forecast(self.id, inference.forecast, window.end_ns)
         self.counters["decisions"] += 1
         self.counters["predictor_failures"] += failure is not None

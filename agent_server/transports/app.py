@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-from fastapi import FastAPI
+from fastapi import FastAPI, Request
+from fastapi.middleware.cors import CORSMiddleware
 from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
+from prometheus_client.exposition import CONTENT_TYPE_LATEST
 from starlette.types import Scope
 
 from agent_server import __version__, assets
@@ -91,9 +93,14 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
 
     @app.get("/readyz")
     async def readyz() -> JSONResponse:
-        """Whether sessions are admitted; models were checked before the server listened."""
-        status = 200 if hub.is_running else 503
-        return JSONResponse({"ready": hub.is_running, "models": hub.models.hashes}, status)
+        """Whether sessions may be sent here: the models are warm, the server does not stop."""
+        status = 200 if hub.is_ready else 503
+        return JSONResponse({"ready": hub.is_ready, "models": hub.models.hashes}, status)
+
+    @app.get("/metrics")
+    async def metrics() -> Response:
+        """Figures for Prometheus."""
+        return Response(hub.metrics.text(), media_type=CONTENT_TYPE_LATEST)
 
     @app.get("/asyncapi.json")
     async def asyncapi_document() -> JSONResponse:

@@ -5,12 +5,15 @@ import logging
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from typing import TypeGuard, get_args
 
+import msgspec
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
-from agent_server.domain.stamp import to_ns
+from agent_server.domain.stamp import NS_PER_S, to_ns
 from agent_server.errors import InvalidInput
+from agent_server.logs import current_session
 from agent_server.protocol import codes
 from agent_server.protocol import connection as c
 from agent_server.protocol import messages as m
@@ -60,7 +63,9 @@ def websocket_router(hub: Hub) -> APIRouter:
                 f"there is no role {role!r}: connect as {', '.join(get_args(m.Role))}",
             )
         else:
-            await _Visit(hub, link, session_id, role).run()
+            door = _Entrance(access, shown_token(websocket.scope))
+            current_session.set(session_id)
+            await _Visit(hub, link, session_id, role, door).run()
 
     return router
 

@@ -11,6 +11,7 @@ from agent_server.client.once import join
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
 from agent_server.domain.scene import Authority
+from agent_server.inference.fake import LastFramePredictor
 from agent_server.protocol import messages as m
 from agent_server.scene.rules import default_rules
 from agent_server.service.hub import Hub
@@ -50,6 +51,9 @@ async def live(models=None, settings=None, open_journal=None, *, port=0, authori
         hub = Hub(settings, rules, models, clock, open_journal, store)
     listener = bind(settings)
     async with serving(hub, listener):
+        await hub.warm.wait()
+        if isinstance(models.predictor, LastFramePredictor):
+            models.predictor.calls = 0  # those of the warm-up do not count
         yield Live(address(listener), hub)
 
 
