@@ -92,3 +92,15 @@ CORE = _layout(
     CORE_BONES,
 )
 """The nine joints of the server."""
+
+KINECT15 = _layout(
+    "kinect15",
+    tuple(range(15)),
+    {3: 6, 4: 7, 5: 8, 9: 12, 10: 13, 11: 14},
+    (
+        *((0, 1), (1, 2), (1, 3), (3, 4), (4, 5), (1, 6), (6, 7), (7, 8)),
+        *((2, 9), (9, 10), (10, 11), (2, 12), (12, 13), (13, 14)),
+    ),
+)
+"""The 15 joints of SBU and K3HI: head, neck, torso, then shoulder, elbow and hand, left and right,
+then hip, knee and foot, left and right."""
