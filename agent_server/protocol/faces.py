@@ -217,15 +217,16 @@ def _coordinates(message: m.FacePoints | m.PackedFacePoints, layout: FaceLayout)
         return packed.reshape(layout.points, layout.axes)
     if len(message.points) != layout.points:
         raise _wrong_count(layout, f"{len(message.points)} points")
-    for index, point in enumerate(message.points):
-        if len(point) != layout.axes:
-            raise InvalidInput(
-                f"points[{index}] has {len(point)} numbers: format {layout} has {layout.axes}",
-                field=f"points[{index}]",
-                code="wrong_point_size",
-            )
-    flat = np.fromiter(chain.from_iterable(message.points), np.float64, layout.points * layout.axes)
-    return flat.reshape(layout.points, layout.axes)
+    axes = layout.axes
+    if set(map(len, message.points)) != {axes}:
+        index = next(i for i, point in enumerate(message.points) if len(point) != axes)
+        raise InvalidInput(
+            f"points[{index}] has {len(message.points[index])} numbers: format {layout} has {axes}",
+            field=f"points[{index}]",
+            code="wrong_point_size",
+        )
+    flat = np.fromiter(chain.from_iterable(message.points), np.float64, layout.points * axes)
+    return flat.reshape(layout.points, axes)
 
 
 def _wrong_count(layout: FaceLayout, got: str) -> InvalidInput:

@@ -8,7 +8,7 @@ from typing import BinaryIO
 
 import msgspec
 from mcap.opcode import Opcode
-from mcap.records import Channel, ChunkIndex, Message, Metadata, MetadataIndex, Statistics
+from mcap.records import Channel, ChunkIndex, Metadata, MetadataIndex, Statistics
 
 from agent_server.domain.inputs import RawInput
 from agent_server.domain.label import Label
@@ -23,6 +23,7 @@ from agent_server.recording.scan import (
     RECOVER_HINT,
     DamagedError,
     RawRecord,
+    Stored,
     open_file,
     read_record,
     read_summary,
@@ -162,7 +163,7 @@ class Recording:
 
     def _decoded(self, raw: RawRecord, wanted: "Mapping[int, Decoder]") -> Iterator[Record]:
         for item in raw.chunk():
-            if not isinstance(item, Message):
+            if not isinstance(item, Stored):
                 continue
             decoder = wanted.get(item.channel_id)
             if decoder is None:

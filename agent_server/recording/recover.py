@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from mcap.opcode import Opcode
-from mcap.records import Channel, Message, Metadata, Schema
+from mcap.records import Channel, Metadata, Schema
 from mcap.stream_reader import MAGIC_SIZE
 
 from agent_server.errors import RecordingError
@@ -17,6 +17,7 @@ from agent_server.recording.reader import open_recording
 from agent_server.recording.scan import (
     DamagedError,
     RawRecord,
+    Stored,
     open_file,
     read_records,
     read_summary,
@@ -156,7 +157,7 @@ class _Copy:
             self._has_metadata = True
         self._sink.metadata(record.name, record.metadata)
 
-    def _item(self, item: Schema | Channel | Message) -> None:
+    def _item(self, item: Schema | Channel | Stored) -> None:
         if isinstance(item, Schema):
             self._schemas[item.id] = item
         elif isinstance(item, Channel):

@@ -11,14 +11,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import BinaryIO, TypeVar
+from typing import BinaryIO, NamedTuple, TypeVar
 
 import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, Footer, McapRecord, Message, Schema
-from mcap.stream_reader import MAGIC_SIZE, breakup_chunk
+from mcap.records import Channel, Footer, McapRecord, Schema
+from mcap.stream_reader import MAGIC_SIZE
 from mcap.writer import MCAP0_MAGIC
 
 from agent_server.errors import RecordingError
@@ -26,7 +26,13 @@ from agent_server.errors import RecordingError
 MAGIC = MCAP0_MAGIC
 RECOVER_HINT = "`agent-server recover IN OUT` saves what is whole of it"
 
+MAX_CHUNK_BYTES = 64 * 1024 * 1024
+"""A chunk that says it is larger is held to be damaged, so that no byte asks for all memory."""
+
 _PREFIX = struct.Struct("<BQ")  # opcode, length of what follows
+_CHUNK = struct.Struct("<QQQII")  # first and last time, size, CRC, length of the compression's name
+_MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, two times
+_LENGTH = struct.Struct("<Q")
 _FOOTER_SIZE = _PREFIX.size + 20
 
 _PARSE_ERRORS = (
@@ -55,6 +61,15 @@ class DamagedError(RecordingError):
         super().__init__(f"{path} is damaged at byte {offset}: {why}; {RECOVER_HINT}")
         self.offset = offset
         self.why = why
+
+
+class Stored(NamedTuple):
+    """A message as a chunk holds it: its channel, number, time and text."""
+
+    channel_id: int
+    sequence: int
+    log_time: int
+    data: bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,19 +104,72 @@ class RawRecord:
         except _PARSE_ERRORS as error:
             raise DamagedError(self.path, self.offset, f"{error!r}") from error
 
-    def chunk(self) -> list[Schema | Channel | Message]:
-        """What a chunk holds, checked against its CRC.
+    def chunk(self) -> Iterator[Schema | Channel | Stored]:
+        """What a chunk holds, in order, once all of it is checked against its CRC.
 
         Raises:
             DamagedError: If it cannot be read.
         """
         if self.opcode != Opcode.CHUNK:
             raise DamagedError(self.path, self.offset, "this is no chunk")
-        chunk = self.parse(Chunk.read)
         try:
-            return breakup_chunk(chunk, validate_crc=True)  # type: ignore[return-value]
+            content = _content(self.data)
         except _PARSE_ERRORS as error:
             raise DamagedError(self.path, self.offset, f"its chunk is corrupt ({error})") from error
+        return self._items(content)
+
+    def _items(self, content: bytes) -> Iterator[Schema | Channel | Stored]:
+        at, size, header = 0, len(content), _PREFIX.size + _MESSAGE.size
+        while at < size:
+            try:
+                opcode, length = _PREFIX.unpack_from(content, at)
+                end = at + _PREFIX.size + length
+                if end > size:
+                    raise ValueError("a record in it is too long")
+                if opcode == Opcode.MESSAGE:
+                    channel, sequence, stamp, _ = _MESSAGE.unpack_from(content, at + _PREFIX.size)
+                    yield Stored(channel, sequence, stamp, content[at + header : end])
+                elif opcode in _NAMES:
+                    stream = ReadDataStream(BytesIO(content[at + _PREFIX.size : end]))
+                    yield _NAMES[opcode].read(stream)
+            except _PARSE_ERRORS as error:
+                raise DamagedError(
+                    self.path, self.offset, f"its chunk is corrupt ({error})"
+                ) from error
+            at = end
+
+
+_NAMES: dict[int, type[Schema] | type[Channel]] = {
+    Opcode.SCHEMA: Schema,
+    Opcode.CHANNEL: Channel,
+}
+
+
+def _content(data: bytes) -> bytes:
+    """The records of a chunk, unpacked."""
+    _, _, size, crc, name_length = _CHUNK.unpack_from(data)
+    at = _CHUNK.size + name_length
+    compression = data[_CHUNK.size : at]
+    (length,) = _LENGTH.unpack_from(data, at)
+    packed = memoryview(data)[at + _LENGTH.size :]
+    if length != len(packed):
+        raise ValueError(f"it is {len(packed)} bytes long, not {length}")
+    if size > MAX_CHUNK_BYTES:
+        raise ValueError(f"it says that it unpacks to {size} bytes")
+    if compression == b"zstd":
+        # A size within the packed bytes would go before the limit.
+        if zstandard.frame_content_size(packed) not in (-1, size):
+            raise ValueError("it speaks of two sizes")
+        content: bytes = zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
+    elif compression == b"":
+        content = bytes(packed)
+    else:
+        raise ValueError(f"it is compressed with {compression!r}, which is neither zstd nor none")
+    if len(content) != size:
+        raise ValueError(f"it unpacks to {len(content)} bytes, not {size}")
+    if crc and zlib.crc32(content) != crc:
+        raise ValueError("its CRC is wrong")
+    return content
 
 
 def open_file(path: Path) -> BinaryIO:

@@ -5,7 +5,9 @@ is followed to the letter. A recording without it (made by the generator or conv
 data set) is dealt with as by a live session that is never late.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
+from itertools import islice
 
 import msgspec
 
@@ -37,9 +39,17 @@ from agent_server.service.worker import infer
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import hold_last
 
+LOOK_AHEAD = 512
+"""Entries that are read at once: eight seconds of body and face."""
+BATCH = 32
+"""Windows that the models are given at once, where they are known early enough."""
+
 
 def replay(recording: Recording, core: Core, models: Models) -> Iterator[Decision]:
     """Every decision on a recording, in order.
+
+    The models see many windows and faces at once, which changes no bit of what they say
+    (``batch_exact``); the decisions on them are made one by one.
 
     Args:
         recording: What was recorded.
@@ -50,21 +60,14 @@ def replay(recording: Recording, core: Core, models: Models) -> Iterator[Decisio
         RecordingError: If the recording cannot be read or contradicts itself.
     """
     if CORE.name in recording.summary.topics:
-        yield from _Follower(recording, core, models).run()
-        return
+        return _Follower(recording, core, models).run(recording.entries())
     core.set_face(recording.metadata.face or "expected")
-    yield from replay_stream(core, models, recording.events())
+    return replay_stream(core, models, recording.events())
 
 
 def replay_stream(core: Core, models: Models, events: Iterable[RawInput]) -> Iterator[Decision]:
     """Every decision on a bare stream of inputs, in the order in which they were captured."""
-    for event in events:
-        for job in _enter(core, event):
-            if isinstance(job, BodyLost):
-                core.lose_body(job)
-            else:
-                inference = infer(models, [job.window])[0]
-                yield core.decide(job, inference.forecast, inference.classification).decision
+    return _Punctual(core, models).run(events)
 
 
 def log_line(decision: Decision) -> bytes:
@@ -72,49 +75,113 @@ def log_line(decision: Decision) -> bytes:
     return msgspec.json.encode(decision_body(decision))
 
 
-def _enter(core: Core, event: RawInput) -> list[Job]:
-    match event:
-        case SkeletonFrame():
-            return core.observe(event)
-        case AffectSample():
-            core.feel(event)
-        case FaceLandmarks() | FaceBlendshapes():
-            core.look(event)
-        case GazeSample():
-            core.gaze(event)
-        case Calibration():
-            core.calibrate(event)
-        case Ack():
-            core.acknowledge(event)
-        case ObjectChanged():
-            core.change_object(event)
-    return []
+class _Replay(ABC):
+    """Runs the half of the core that makes windows ahead of the half that decides on them."""
+
+    def __init__(self, core: Core, models: Models) -> None:
+        self._core = core
+        self._models = models
+        self._waiting: list[tuple[PendingWindow, str | None]] = []
+
+    def run(self, entries: Iterable[RawInput | CoreEntry]) -> Iterator[Decision]:
+        """The decisions on all entries."""
+        rest = iter(entries)
+        while block := list(islice(rest, LOOK_AHEAD)):
+            faces = [one for one in block if isinstance(one, FaceLandmarks | FaceBlendshapes)]
+            estimates = iter(self._core.read(faces))
+            for entry in block:
+                if isinstance(entry, FaceLandmarks | FaceBlendshapes):
+                    self._core.look(entry, next(estimates))
+                elif isinstance(entry, SkeletonFrame):
+                    yield from self._take(self._core.observe(entry))
+                else:
+                    yield from self._enter(entry)
+        yield from self._decide_all()
+
+    @abstractmethod
+    def _take(self, jobs: list[Job]) -> Iterator[Decision]:
+        """Deal with the jobs that a frame gives."""
+
+    def _enter(self, entry: RawInput | CoreEntry) -> Iterator[Decision]:
+        match entry:
+            case AffectSample():
+                self._core.feel(entry)
+            case GazeSample():
+                self._core.gaze(entry)
+            case _:
+                # The room sees it too, and must have seen all decisions that came before.
+                yield from self._decide_all()
+                self._tell(entry)
+
+    def _tell(self, entry: RawInput | CoreEntry) -> None:
+        match entry:
+            case Calibration():
+                self._core.calibrate(entry)
+            case Ack():
+                self._core.acknowledge(entry)
+            case ObjectChanged():
+                self._core.change_object(entry)
+
+    def _wait(self, pending: PendingWindow, failure: str | None) -> Iterator[Decision]:
+        self._waiting.append((pending, failure))
+        if len(self._waiting) >= BATCH:
+            yield from self._decide_all()
+
+    def _decide_all(self) -> Iterator[Decision]:
+        """Decide on every window that waits, in order."""
+        waiting, self._waiting = self._waiting, []
+        good = [pending.window for pending, failure in waiting if failure is None]
+        inferences = iter(infer(self._models, good) if good else ())
+        for pending, failure in waiting:
+            if failure is None:
+                inference = next(inferences)
+                forecast, classification = inference.forecast, inference.classification
+            else:
+                forecast = hold_last(pending.window, failure)
+                classification = classify(self._models.classifier, [pending.window], [forecast])[0]
+            yield self._core.decide(pending, forecast, classification).decision
 
 
-class _Follower:
+class _Punctual(_Replay):
+    """Decides on a bare stream as if every window were decided on at once."""
+
+    def _take(self, jobs: list[Job]) -> Iterator[Decision]:
+        for job in jobs:
+            if isinstance(job, BodyLost):
+                yield from self._decide_all()
+                self._core.lose_body(job)
+            else:
+                yield from self._wait(job, None)
+
+
+class _Follower(_Replay):
     """Follows the log of what entered a live session's core."""
 
     def __init__(self, recording: Recording, core: Core, models: Models) -> None:
+        super().__init__(core, models)
         self._recording = recording
-        self._core = core
-        self._models = models
         self._windows: dict[int, PendingWindow] = {}
 
-    def run(self) -> Iterator[Decision]:
-        for entry in self._recording.entries():
-            if isinstance(entry, RawInput):
-                self._keep(_enter(self._core, entry))
-            elif isinstance(entry, WindowDone):
-                yield self._decide(entry)
-            else:
-                self._apply(entry)
+    def _take(self, jobs: list[Job]) -> Iterator[Decision]:
+        """Windows wait until the log says what became of them; a loss is in the log itself."""
+        for job in jobs:
+            if isinstance(job, PendingWindow):
+                self._windows[job.window.index] = job
+        return iter(())
 
-    def _apply(self, entry: CoreEntry) -> None:
+    def _enter(self, entry: RawInput | CoreEntry) -> Iterator[Decision]:
         match entry:
+            case WindowDone(index=index, failure=failure):
+                yield from self._wait(self._pop(index), failure)
             case WindowSkipped(index=index):
-                self._take(index)
+                self._pop(index)
+            case _:
+                yield from super()._enter(entry)
+
+    def _tell(self, entry: RawInput | CoreEntry) -> None:
+        match entry:
             case Tick(stamp_ns=now_ns):
-                self._keep(self._core.tick(now_ns)[0])
+                self._take(self._core.tick(now_ns)[0])
             case RendererChanged(stamp_ns=now_ns, attached=attached):
                 self._core.set_renderer(attached, now_ns)
             case SensorChanged(face=face):
@@ -123,25 +190,10 @@ class _Follower:
                 self._core.restore(room)
             case BodyGone(stamp_ns=now_ns, body_id=body_id):
                 self._core.lose_body(BodyLost(now_ns, body_id))
+            case _:
+                super()._tell(entry)
 
-    def _decide(self, entry: WindowDone) -> Decision:
-        pending = self._take(entry.index)
-        window = pending.window
-        if entry.failure is None:
-            inference = infer(self._models, [window])[0]
-            forecast, classification = inference.forecast, inference.classification
-        else:
-            forecast = hold_last(window, entry.failure)
-            classification = classify(self._models.classifier, [window], [forecast])[0]
-        return self._core.decide(pending, forecast, classification).decision
-
-    def _keep(self, jobs: Iterable[Job]) -> None:
-        """Windows wait until the log says what became of them; a loss is in the log itself."""
-        for job in jobs:
-            if isinstance(job, PendingWindow):
-                self._windows[job.window.index] = job
-
-    def _take(self, index: int) -> PendingWindow:
+    def _pop(self, index: int) -> PendingWindow:
         pending = self._windows.pop(index, None)
         if pending is None:
             raise RecordingError(

@@ -6,7 +6,7 @@ each sample states. What a person's neutral face comes to can be taken off (cali
 """
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -40,8 +40,44 @@ class AffectEstimator:
         self._calibration: Calibration | None = None
         self._neutral_faces: list[Float64] = []
 
-    def push(self, face: Face) -> tuple[AffectSample, Calibrated | None]:
+    def read(self, faces: Sequence[Face]) -> list[Float64]:
+        """What the models make of faces, each for itself; nothing changes by it.
+
+        Several faces at once take much less time than one by one, and come to the same bits.
+
+        Returns:
+            For each face valence, arousal and their standard deviations, on [-10, 10]: shape (4,).
+
+        Raises:
+            InvalidInput: If there is no model for one of them.
+            InferenceError: If a model fails.
+        """
+        estimates: list[Float64] = [_NOTHING] * len(faces)
+        kinds: dict[tuple[str, int], list[int]] = {}
+        for index, face in enumerate(faces):
+            kinds.setdefault((_source(face), _values(face).size), []).append(index)
+        for (source, _), indices in kinds.items():
+            model = self._models.get(source)
+            if model is None:
+                raise InvalidInput(
+                    f"this server has no model that reads {source}: send valence and arousal",
+                    field="type",
+                    code="no_model",
+                )
+            features = _FEATURES[source](np.stack([_values(faces[index]) for index in indices]))
+            rows = model.estimate(features).astype(np.float64) * AFFECT_LIMIT
+            for index, row in zip(indices, rows, strict=True):
+                estimates[index] = row
+        return estimates
+
+    def push(
+        self, face: Face, estimate: Float64 | None = None
+    ) -> tuple[AffectSample, Calibrated | None]:
         """Take the next face; faces come in the order of their capture.
+
+        Args:
+            face: The face.
+            estimate: What :meth:`read` made of it, if it has been read already.
 
         Returns:
             Affect at the time of the face, and what a calibration came to that ended with it.
@@ -51,16 +87,9 @@ class AffectEstimator:
             InferenceError: If the model fails; nothing has changed then.
         """
         now_ns = face.originating_ns
-        source, features = _features(face)
-        model = self._models.get(source)
-        if model is None:
-            raise InvalidInput(
-                f"this server has no model that reads {source}: send valence and arousal",
-                field="type",
-                code="no_model",
-            )
-        # Valence, arousal and their standard deviations.
-        estimate = model.estimate(features[None])[0].astype(np.float64) * AFFECT_LIMIT
+        source = _source(face)
+        if estimate is None:
+            (estimate,) = self.read([face])
         if source != self._source:
             self._source = source
             self._recent.clear()
@@ -119,9 +148,20 @@ class AffectEstimator:
         return Calibrated(valence, arousal, faces, is_done)
 
 
-def _features(face: Face) -> tuple[str, Float32]:
+_NOTHING: Float64 = np.zeros(4)
+_FEATURES: dict[str, Callable[[Float32], Float32]] = {
+    "mesh": mesh_features,
+    "points68": points68_features,
+    "blendshapes": blendshape_features,
+}
+"""What a face is given as -> what its model sees of it, for several faces at once."""
+
+
+def _source(face: Face) -> str:
     if isinstance(face, FaceBlendshapes):
-        return "blendshapes", blendshape_features(face.values)
-    if face.layout is FaceLayout.DLIB68:
-        return "points68", points68_features(face.points)
-    return "mesh", mesh_features(face.points)
+        return "blendshapes"
+    return "points68" if face.layout is FaceLayout.DLIB68 else "mesh"
+
+
+def _values(face: Face) -> Float32:
+    return face.values if isinstance(face, FaceBlendshapes) else face.points
