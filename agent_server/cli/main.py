@@ -11,6 +11,7 @@ from agent_server.cli.bench import bench
 from agent_server.cli.config import check_config, config
 from agent_server.cli.convert import convert
 from agent_server.cli.demo import demo
+from agent_server.cli.doctor import doctor
 from agent_server.cli.gestures import gestures
 from agent_server.cli.recover import recover
 from agent_server.cli.replay import replay
@@ -27,7 +28,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, serve, replay, convert, recover, schema, config):
+for command in (demo, serve, replay, convert, recover, schema, config, token, doctor):
     app.command()(command)
 app.command(name="check-config")(check_config)
 app.add_typer(gestures)
