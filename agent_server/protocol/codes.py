@@ -61,6 +61,7 @@ CLOSE_TOO_LARGE = 1009
 CLOSE_INTERNAL = 1011
 CLOSE_BAD_HELLO = 4400
 CLOSE_WRONG_VERSION = 4401
+CLOSE_NOT_ADMITTED = 4403
 CLOSE_HELLO_TIMEOUT = 4408
 CLOSE_REPLACED = 4409
 CLOSE_SILENT = 4410
@@ -98,6 +99,13 @@ CLOSE_CODES: tuple[CloseCode, ...] = (
         Retry.LATER,
     ),
     CloseCode(
+        CLOSE_NOT_ADMITTED,
+        "not_admitted",
+        "no token, one that is wrong or has expired, or one that does not go so far",
+        "get a token of this role and session",
+        Retry.NEVER,
+    ),
+    CloseCode(
         CLOSE_HELLO_TIMEOUT, "hello_timeout", "no hello in time", "say hello at once", Retry.SOON
     ),
     CloseCode(
@@ -124,7 +132,13 @@ CLOSE_CODES: tuple[CloseCode, ...] = (
     CloseCode(
         CLOSE_TOO_MANY_ERRORS, "too_many_errors", "errors that went on", "mend it", Retry.LATER
     ),
-    CloseCode(CLOSE_FULL, "full", "the server takes no more sessions", "try later", Retry.LATER),
+    CloseCode(
+        CLOSE_FULL,
+        "full",
+        "the server takes no more sessions, or the session no more clients",
+        "try later",
+        Retry.LATER,
+    ),
 )
 """Every close code of the server, by its number. Any other end means SOON."""
 
@@ -161,7 +175,11 @@ ERROR_CODES: tuple[ErrorCode, ...] = (
     ErrorCode("zero_vector", "a gaze without a direction", "send the direction of the eyes"),
     ErrorCode("unknown_object", "the rule file has no such object", "name one that it has"),
     ErrorCode("unknown_state", "the object has no such state", "name one that it has"),
-    ErrorCode("full", "the server takes no more sessions", "try later"),
+    ErrorCode("no_token", "this server wants a token", "send `token` in hello"),
+    ErrorCode("bad_token", "the token is not valid", "get another one"),
+    ErrorCode("token_expired", "the token has expired", "get another one"),
+    ErrorCode("not_allowed", "the token goes for another role or session", "get one for this"),
+    ErrorCode("full", "no more sessions, or clients of one, are taken", "try later"),
     ErrorCode("stopping", "the server is stopping", "connect again and resume"),
     ErrorCode("silent", "nothing was heard for 2.5 heartbeats", "answer pings"),
     ErrorCode("classifier_failed", "telemetry: a window got no decision", "the next one may"),

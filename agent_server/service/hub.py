@@ -3,7 +3,7 @@
 import asyncio
 import logging
 import secrets
-from collections.abc import AsyncIterator, Callable, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
 
 from agent_server import __version__
@@ -31,7 +31,7 @@ log = logging.getLogger(__name__)
 
 
 class HubFull(Exception):
-    """No further session is admitted."""
+    """No further session, or client of a session, is admitted; the text says which."""
 
 
 class HubStopping(Exception):
@@ -136,13 +136,18 @@ class Hub:
         """Bring a client into its session, which is opened if need be.
 
         Raises:
-            HubFull: If there are too many sessions.
+            HubFull: If there are too many sessions, or clients of this one.
             HubStopping: If the server is stopping.
             InvalidInput: If the session refuses the client.
         """
         session = self._sessions.get(session_id)
         if session is None:
             session = self._open(session_id)
+        elif len(session.audience.clients) >= self.settings.server.max_clients:
+            raise HubFull(
+                f"{self.settings.server.max_clients} clients are in this session and no more are "
+                "admitted"
+            )
         ending = self._endings.pop(session_id, None)
         if ending is not None:
             ending.cancel()
@@ -200,7 +205,9 @@ class Hub:
         if self._group is None:
             raise HubStopping
         if len(self._sessions) >= self.settings.server.max_sessions:
-            raise HubFull
+            raise HubFull(
+                f"{self.settings.server.max_sessions} sessions are open and no more are admitted"
+            )
         saved = self._store.load(session_id)
         session = Session(
             session_id,

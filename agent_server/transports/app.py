@@ -1,7 +1,7 @@
 """The web application: websockets, health, sessions and the browser page."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
@@ -20,8 +20,10 @@ from agent_server.inference.manifest import MANIFEST_FILE, MODEL_FILE
 from agent_server.protocol.convert import skeleton_to_message
 from agent_server.protocol.schema import reference
 from agent_server.protocol.schema.json_schema import asyncapi
+from agent_server.service.auth import OPEN, Access, NotAdmitted
 from agent_server.service.hub import Hub
 from agent_server.synthetic.stand_in import stand_in
+from agent_server.transports.guard import Guard, admitted, refused, require
 from agent_server.transports.websocket import websocket_router
 
 _NO_PAGE = """<!doctype html><meta charset="utf-8"><title>agent-server</title>
@@ -43,6 +45,12 @@ PAGE_NETWORKS = ("face_detector", "face_mesh")
 FOR_GOOD = "public, max-age=31536000, immutable"
 
 
+async def _refuse(_: Request, error: Exception) -> Response:
+    """The answer to who lacks a right."""
+    assert isinstance(error, NotAdmitted)  # noqa: S101 - it is registered for no other
+    return refused(error)
+
+
 class _Page(StaticFiles):
     """The browser page: checked for changes at each visit, and confined to this server."""
 
@@ -51,7 +59,6 @@ class _Page(StaticFiles):
         response = super().file_response(*args, **kwargs)
         response.headers["Cache-Control"] = "no-cache"
         response.headers["Content-Security-Policy"] = PAGE_POLICY
-        response.headers["X-Content-Type-Options"] = "nosniff"
         return response
 
     async def get_response(self, path: str, scope: Scope) -> Response:
@@ -59,6 +66,7 @@ class _Page(StaticFiles):
         if path == CLIENT:
             response = await super().get_response(path, scope)
             response.headers["Access-Control-Allow-Origin"] = "*"
+            response.headers["Cross-Origin-Resource-Policy"] = "cross-origin"
             return response
         if not path.endswith(".wasm"):
             return await super().get_response(path, scope)
@@ -68,12 +76,23 @@ class _Page(StaticFiles):
         return response
 
 
-def create_app(hub: Hub, page: Path) -> FastAPI:
+OPEN_PATHS = ("/", "/healthz", "/readyz")
+"""What needs no token, beside the page's files."""
+
+
+def _page_files(page: Path) -> Iterator[str]:
+    """The paths of the page's files; WebAssembly is built compressed, and asked for as it is."""
+    for file in page.rglob("*"):
+        yield f"/{file.relative_to(page).as_posix().removesuffix('.gz')}"
+
+
+def create_app(hub: Hub, page: Path, access: Access = OPEN) -> FastAPI:
     """Put the application together.
 
     Args:
         hub: The sessions; it runs as long as the application does.
         page: Folder of the built browser page.
+        access: Who is admitted.
     """
 
     @asynccontextmanager
@@ -84,7 +103,17 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
     app = FastAPI(
         title="agent-server", version=__version__, lifespan=lifespan, docs_url=None, redoc_url=None
     )
-    app.include_router(websocket_router(hub))
+    open_paths = (*OPEN_PATHS, *_page_files(page))
+    app.add_middleware(Guard, access=access, settings=hub.settings, open_paths=open_paths)
+    if origins := hub.settings.access.origins:
+        app.add_middleware(
+            CORSMiddleware,
+            allow_origins=origins,
+            allow_methods=["GET", "PUT", "POST"],
+            allow_headers=["authorization"],
+        )
+    app.add_exception_handler(NotAdmitted, _refuse)
+    app.include_router(websocket_router(hub, access))
 
     @app.get("/healthz")
     async def healthz() -> dict[str, str]:
@@ -113,8 +142,9 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
         return HTMLResponse(reference.page(), headers={"Content-Security-Policy": DOCS_POLICY})
 
     @app.get("/v1/sessions")
-    async def sessions() -> dict[str, list[dict[str, object]]]:
-        """Open sessions."""
+    async def sessions(request: Request) -> dict[str, list[dict[str, object]]]:
+        """Open sessions, as far as the token goes."""
+        bearer = admitted(request.scope)
         return {
             "sessions": [
                 {
@@ -124,12 +154,14 @@ def create_app(hub: Hub, page: Path) -> FastAPI:
                     "decisions": session.counters["decisions"],
                 }
                 for session in hub.sessions.values()
+                if bearer.sees(session.id)
             ]
         }
 
     @app.put("/v1/sessions/{session_id}/objects/{name}")
-    async def set_object(session_id: str, name: str, state: str) -> JSONResponse:
+    async def set_object(request: Request, session_id: str, name: str, state: str) -> JSONResponse:
         """Set an object of a session's room by hand; renderers are told."""
+        require(request.scope, session_id, "renderer", "operator")
         session = hub.sessions.get(session_id)
         if session is None:
             return JSONResponse({"detail": f"there is no open session {session_id!r}"}, 404)

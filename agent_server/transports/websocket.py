@@ -18,10 +18,13 @@ from agent_server.protocol import codes
 from agent_server.protocol import connection as c
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS, Codec, Wire
+from agent_server.protocol.pace import Pace
 from agent_server.service.audience import Client
+from agent_server.service.auth import Access, NotAdmitted
 from agent_server.service.hub import Hub, HubFull, HubStopping
 from agent_server.service.mailbox import Outbox, Overflow
 from agent_server.service.session import Session
+from agent_server.transports.guard import shown_token
 
 log = logging.getLogger(__name__)
 
@@ -33,7 +36,7 @@ SESSION_ID = re.compile(r"[A-Za-z0-9_.-]{1,64}")
 SESSION_ID_RULE = "a session id has 1 to 64 letters, digits, '.', '_' and '-'"
 
 
-def websocket_router(hub: Hub) -> APIRouter:
+def websocket_router(hub: Hub, access: Access) -> APIRouter:
     """Routes of the three roles: ``/v1/sessions/{id}/sensor``, ``renderer`` and ``monitor``."""
     router = APIRouter()
 
@@ -127,6 +130,11 @@ class _Link:
             await self.close(close_code, sentence)
 
 
+def _not_admitted(error: NotAdmitted) -> c.Refused:
+    told = m.ErrorMessage(error.code, str(error), error.field, fatal=True)
+    return c.Refused(told, codes.CLOSE_NOT_ADMITTED)
+
+
 @contextmanager
 def _gone_as_disconnect() -> Iterator[None]:
     """A server that has closed the websocket by itself says so by a RuntimeError."""
@@ -136,14 +144,37 @@ def _gone_as_disconnect() -> Iterator[None]:
         raise WebSocketDisconnect(CLOSE_ABNORMAL) from error
 
 
+@dataclass(frozen=True, slots=True)
+class _Entrance:
+    """Who is admitted, and what the handshake has shown."""
+
+    access: Access
+    token: str | None
+
+    def admit(self, hello: m.Hello, session_id: str, role: m.Role) -> int | None:
+        """Until when the client may stay, on the wall clock; None means for good.
+
+        Raises:
+            NotAdmitted: If it may not come in.
+        """
+        admitted = self.access.admit(hello.token or self.token)
+        admitted.require(session_id, role)
+        return admitted.expires_ns
+
+
 class _Visit:
     """One client's stay."""
 
-    def __init__(self, hub: Hub, link: _Link, session_id: str, role: m.Role) -> None:
+    def __init__(
+        self, hub: Hub, link: _Link, session_id: str, role: m.Role, entrance: _Entrance
+    ) -> None:
         server = hub.settings.server
         self._hub = hub
         self._link = link
         self._session_id = session_id
+        self._entrance = entrance
+        self._stay_until_ns: int | None = None
+        self._pace = Pace(server.max_messages_per_s)
         self._connection = c.ServerConnection(
             session_id,
             role,
@@ -203,6 +234,9 @@ class _Visit:
             if self._outbox.close_code is not None:
                 return
             await self._take(data)
+            # Others' turn, however much this client has sent.
+            wait_ns = self._pace.wait_ns(self._hub.clock.now_ns())
+            await asyncio.sleep(wait_ns / NS_PER_S)
 
     async def _take(self, data: Wire) -> None:
         event = self._connection.receive(data, self._hub.clock.now_ns())
@@ -226,18 +260,21 @@ class _Visit:
                 self._join(hello)
 
     def _join(self, hello: m.Hello) -> None:
-        client = Client(self._connection.role, hello, self._outbox, self._connection.clock)
+        role = self._connection.role
+        try:
+            self._stay(self._entrance.admit(hello, self._session_id, role))
+        except NotAdmitted as error:
+            log.info("session %s: a %s was refused: %s", self._session_id, role, error.code)
+            self._refuse(_not_admitted(error))
+            return
+        # Nothing from here on needs to know the secret.
+        hello = msgspec.structs.replace(hello, token=None)
+        client = Client(role, hello, self._outbox, self._connection.clock)
         try:
             session = self._hub.join(self._session_id, client)
-        except HubFull:
-            limit = self._hub.settings.server.max_sessions
+        except HubFull as error:
             self._refuse(
-                c.Refused(
-                    m.ErrorMessage(
-                        "full", f"{limit} sessions are open and no more are admitted", fatal=True
-                    ),
-                    codes.CLOSE_FULL,
-                )
+                c.Refused(m.ErrorMessage("full", str(error), fatal=True), codes.CLOSE_FULL)
             )
             return
         except HubStopping:
@@ -260,6 +297,12 @@ class _Visit:
         # Before anything that the session has for this client.
         self._outbox.precede(self._hub.welcome(session, client))
 
+    def _stay(self, expires_ns: int | None) -> None:
+        """Note when the token expires, by a clock that nobody sets."""
+        if expires_ns is not None:
+            clock = self._hub.clock
+            self._stay_until_ns = clock.now_ns() + expires_ns - clock.wall_ns()
+
     def _refuse(self, refused: c.Refused) -> None:
         if self._session is not None:
             self._session.counters["rejected_messages"] += 1
@@ -281,7 +324,12 @@ class _Visit:
             await asyncio.sleep(heartbeat_s)
             if self._connection.state is not c.State.OPEN:
                 continue
-            match self._connection.beat(self._hub.clock.now_ns()):
+            now_ns = self._hub.clock.now_ns()
+            if self._stay_until_ns is not None and now_ns >= self._stay_until_ns:
+                sentence = "the token has expired: come back with a new one"
+                self._refuse(_not_admitted(NotAdmitted(sentence, code="token_expired")))
+                continue
+            match self._connection.beat(now_ns):
                 case c.Reply(message):
                     self._outbox.update("ping", message)
                 case c.Refused() as refused:

@@ -14,6 +14,7 @@ from agent_server.domain.scene import Authority
 from agent_server.inference.fake import LastFramePredictor
 from agent_server.protocol import messages as m
 from agent_server.scene.rules import default_rules
+from agent_server.service.auth import OPEN
 from agent_server.service.hub import Hub
 from agent_server.service.store import FolderStore
 from agent_server.transports.server import address, bind, serving
@@ -32,10 +33,21 @@ class Live:
 
 
 @asynccontextmanager
-async def live(models=None, settings=None, open_journal=None, *, port=0, authority=None, hub=None):
+async def live(
+    models=None,
+    settings=None,
+    open_journal=None,
+    *,
+    port=0,
+    authority=None,
+    preempts=None,
+    hub=None,
+    access=OPEN,
+):
     """Serve on a free port, or a given one, while the context lasts.
 
-    ``authority`` says of objects by name whose word holds; ``hub`` is one of the test's own.
+    ``authority`` says of objects by name whose word holds, ``preempts`` of gestures by name which
+    running reactions they cut short; ``hub`` is one of the test's own.
     """
     settings = settings or Settings()
     server = msgspec.structs.replace(settings.server, port=port)
@@ -44,17 +56,21 @@ async def live(models=None, settings=None, open_journal=None, *, port=0, authori
     rules = default_rules(models.classifier.labels)
     for name, side in (authority or {}).items():
         rules.objects[name] = replace(rules.objects[name], authority=Authority(side))
+    for gesture, running in (preempts or {}).items():
+        (rule,) = rules.rules[gesture]
+        rules.rules[gesture] = (replace(rule, preempts=frozenset({running})),)
     if hub is None:
         state = settings.server.state
         clock = SystemClock()
         store = None if state is None else FolderStore(Path(state), clock.wall_ns())
         hub = Hub(settings, rules, models, clock, open_journal, store)
     listener = bind(settings)
-    async with serving(hub, listener):
+    is_secure = settings.server.tls_cert is not None
+    async with serving(hub, listener, access):
         await hub.warm.wait()
         if isinstance(models.predictor, LastFramePredictor):
             models.predictor.calls = 0  # those of the warm-up do not count
-        yield Live(address(listener), hub)
+        yield Live(address(listener, is_secure=is_secure), hub)
 
 
 async def next_of(client, kind, within_s=5.0):
