@@ -6,11 +6,13 @@ This is decided before a byte is read, below the application: uvicorn has no suc
 import asyncio
 import logging
 from collections import Counter
+from contextlib import suppress
 from typing import Any
 
 import h11
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.exceptions import InvalidState
 
 from agent_server.config import Settings
 
@@ -148,10 +150,22 @@ class _WebSocket(WebSocketsSansIOProtocol):
     """Leaves the door by which it came as HTTP."""
 
     door: Door
+    _address: str
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        super().connection_made(transport)
+        self._address = _address(transport)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self.door.leave(_address(self.transport))
+        self.door.leave(self._address)
         super().connection_lost(exc)
+
+    def shutdown(self) -> None:
+        # One that the client is closing at this moment can be sent nothing more.
+        with suppress(InvalidState):
+            super().shutdown()
+            return
+        self.transport.close()
 
 
 def _address(transport: asyncio.BaseTransport) -> str:

@@ -95,8 +95,8 @@ async def test_a_client_that_is_sent_away_does_not_come_back_by_itself():
     async with live(access=ACCESS) as server:
         renderer = Renderer(Options(server.url, "s", "tester", token=SECRET))
         with pytest.raises(ConnectionFailed, match="not valid"):
-            async with asyncio.timeout(5), renderer:
-                await asyncio.sleep(5)
+            async with asyncio.timeout(5):
+                await renderer.link.run()
 
 
 async def test_a_token_that_expires_ends_the_visit():
