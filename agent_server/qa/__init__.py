@@ -1,0 +1,1 @@
+"""Quality assurance: recordings with labels become tests, and tests become a report."""
