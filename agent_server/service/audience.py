@@ -7,6 +7,7 @@ from agent_server.domain.stamp import NS_PER_MS
 from agent_server.protocol import messages as m
 from agent_server.protocol.clock_estimate import ClockEstimate
 from agent_server.protocol.codes import CLOSE_TOO_SLOW
+from agent_server.service.load import Load, LoadGauge
 from agent_server.service.mailbox import Outbox, Overflow
 
 
@@ -44,11 +45,20 @@ class Client:
         )
 
 
-class Audience:
-    """The clients of one session."""
+LEFT_OUT_FIRST: frozenset[m.Topic] = frozenset(("pose", "forecast", "affect", "stats"))
+"""Telemetry that nobody is told while the server is loaded: the next of it makes it up."""
 
-    def __init__(self) -> None:
+
+class Audience:
+    """The clients of one session.
+
+    Args:
+        gauge: How loaded the server is.
+    """
+
+    def __init__(self, gauge: LoadGauge | None = None) -> None:
         self.clients: list[Client] = []
+        self._gauge = gauge or LoadGauge()
 
     def having(self, role: m.Role) -> Iterator[Client]:
         """The clients that came as ``role``."""
@@ -60,7 +70,10 @@ class Audience:
         return sum(client.outbox.missed for client in self.having("monitor"))
 
     def wants(self, topic: m.Topic) -> bool:
-        """Whether any monitor wants this kind of telemetry."""
+        """Whether any monitor wants this kind of telemetry, and there is time for it."""
+        if self._leaves_out(topic):
+            self._skip(topic)
+            return False
         return any(client.wants(topic) for client in self.having("monitor"))
 
     def show(self, topic: m.Topic, message: m.Message, key: str = "") -> None:
@@ -71,9 +84,20 @@ class Audience:
             message: The latest of it.
             key: Of what it is the latest, where a topic speaks of several things.
         """
+        if self._leaves_out(topic):
+            self._skip(topic)
+            return
         for client in self.having("monitor"):
             if client.wants(topic):
                 client.outbox.show(topic, message, key)
+
+    def _leaves_out(self, topic: m.Topic) -> bool:
+        return self._gauge.load >= Load.TELEMETRY and topic in LEFT_OUT_FIRST
+
+    def _skip(self, topic: m.Topic) -> None:
+        for client in self.having("monitor"):
+            if client.wants(topic):
+                client.outbox.skip(topic)
 
     def show_scene(self, scene: m.SceneState) -> None:
         """Give the room's state to monitors and renderers."""

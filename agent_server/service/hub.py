@@ -4,7 +4,8 @@ import asyncio
 import logging
 import secrets
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
-from contextlib import asynccontextmanager
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import asynccontextmanager, suppress
 
 from agent_server import __version__
 from agent_server.clock import Clock
@@ -18,16 +19,28 @@ from agent_server.service.audience import Client
 from agent_server.service.avatar import Avatar, NoAvatar
 from agent_server.service.camera import Eyes
 from agent_server.service.journal import Journal, NoJournal
+from agent_server.service.load import Load, LoadGauge
 from agent_server.service.loop_lag import measure_lag
 from agent_server.service.metrics import Metrics
 from agent_server.service.models import Models
 from agent_server.service.session import Opening, Session
 from agent_server.service.store import MemoryStore, SessionStore
 from agent_server.service.warm_up import warm_up
+from agent_server.service.watchdog import Watchdog
 from agent_server.service.watching import DecisionLog, Watcher
 from agent_server.service.worker import InferenceWorker
 
 log = logging.getLogger(__name__)
+
+
+MAX_CLOSERS = 64
+JOURNALS_S = 4.0
+"""How long a server that stops waits for its recordings; with all else it takes under 10 s."""
+_LEFT_OUT = {
+    Load.NONE: "the event loop is in time again, nothing is left out",
+    Load.TELEMETRY: "the event loop is late, telemetry is left out",
+    Load.WINDOWS: "the event loop is very late, telemetry and every other window are left out",
+}
 
 
 class HubFull(Exception):
@@ -80,6 +93,14 @@ class Hub:
         self.metrics = Metrics(self._sessions, self._worker)
         self._watchers = (self.metrics, DecisionLog(), *watchers)
         self.warm = asyncio.Event()
+        self.gauge = LoadGauge()
+        self.watchdog = Watchdog(settings.server.watchdog_s, lambda: self._worker.busy_since_s)
+        self._clients = 0
+        self._empty = asyncio.Event()
+        self._empty.set()
+        self._journals: dict[str, Journal] = {}
+        self._closings: set[asyncio.Future[None]] = set()
+        self._closers = ThreadPoolExecutor(MAX_CLOSERS, thread_name_prefix="closing")
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._endings: dict[str, asyncio.TimerHandle] = {}
         self._group: asyncio.TaskGroup | None = None
@@ -96,8 +117,8 @@ class Hub:
 
     @property
     def is_ready(self) -> bool:
-        """Whether a session would be served at full speed: the server is warm and not stopping."""
-        return self.is_running and self.warm.is_set()
+        """Whether a session would be served at full speed: warm, nothing stuck, not stopping."""
+        return self.is_running and self.warm.is_set() and self.watchdog.is_well
 
     @asynccontextmanager
     async def run(self) -> AsyncIterator[None]:
@@ -105,13 +126,16 @@ class Hub:
         async with asyncio.TaskGroup() as group:
             self._group = group
             worker = group.create_task(self._worker.run(), name="inference")
-            lag = group.create_task(measure_lag(self.metrics.lagged), name="loop lag")
+            lag = group.create_task(measure_lag(self._take_lag), name="loop lag")
             warming = group.create_task(self._warm_up(), name="warm-up")
+            self.watchdog.start()
             try:
                 yield
             finally:
+                self.watchdog.stop()
                 self.stop()
                 self._avatar.close()
+                await self._close_journals()
                 for task in (worker, lag, warming):
                     task.cancel()
                 if self._eyes is not None:
@@ -123,6 +147,26 @@ class Hub:
         except InferenceError as error:
             log.error("the models failed on the first windows: %s", error)
         self.warm.set()
+
+    def _take_lag(self, lag_s: float) -> None:
+        self.metrics.lagged(lag_s)
+        self.watchdog.beat()
+        if self.gauge.push(lag_s):
+            log.warning("load: %s", _LEFT_OUT[self.gauge.load])
+
+    async def _close_journals(self) -> None:
+        self._closers.shutdown(wait=False)
+        if self._closings:
+            _, hanging = await asyncio.wait(self._closings, timeout=JOURNALS_S)
+            if hanging:
+                log.error("%d recordings are not finished: the disk hangs", len(hanging))
+
+    async def drain(self) -> None:
+        """Stop, and let clients read what waits for them, but not for long."""
+        self.stop()
+        with suppress(TimeoutError):
+            async with asyncio.timeout(self.settings.server.drain_s):
+                await self._empty.wait()
 
     def stop(self) -> None:
         """Send everybody away and admit nobody any more."""
@@ -155,10 +199,15 @@ class Hub:
             session.join(client)
         finally:
             self._end_if_empty(session)
+        self._clients += 1
+        self._empty.clear()
         return session
 
     def leave(self, session: Session, client: Client, *, for_good: bool) -> None:
         """A client's connection is over, for good if it said goodbye."""
+        self._clients -= 1
+        if self._clients == 0:
+            self._empty.set()
         if client in session.audience.clients:
             session.leave(client, for_good=for_good)
         if self._sessions.get(session.id) is session:
@@ -208,7 +257,10 @@ class Hub:
             raise HubFull(
                 f"{self.settings.server.max_sessions} sessions are open and no more are admitted"
             )
+        if self.gauge.load >= Load.WINDOWS:
+            raise HubFull("the server is overloaded and opens no new session now")
         saved = self._store.load(session_id)
+        journal = NoJournal() if self._open_journal is None else self._open_journal(session_id)
         session = Session(
             session_id,
             self.settings,
@@ -221,13 +273,15 @@ class Hub:
                 epoch=secrets.token_hex(4),
                 saved=saved,
             ),
-            NoJournal() if self._open_journal is None else self._open_journal(session_id),
+            journal,
             self._store,
             self._avatar,
             self._eyes,
-            self._watchers,
+            gauge=self.gauge,
+            watchers=self._watchers,
         )
         self._sessions[session_id] = session
+        self._journals[session_id] = journal
         self._tasks[session_id] = self._group.create_task(
             self._guard(session), name=f"session {session_id}"
         )
@@ -260,6 +314,11 @@ class Hub:
         session = self._sessions.pop(session_id)
         self._endings.pop(session_id, None)
         session.close(code, reason)
+        # A slow disk may take its time to finish a recording, and nobody else's.
+        loop = asyncio.get_running_loop()
+        closing = loop.run_in_executor(self._closers, self._journals.pop(session_id).close)
+        self._closings.add(closing)
+        closing.add_done_callback(self._closings.discard)
         self.metrics.closed(session)
         self._tasks.pop(session_id).cancel()
         self._store.release(session_id)

@@ -60,6 +60,11 @@ class Outbox:
             self.missed += 1
             self._untold[topic] += 1
 
+    def skip(self, topic: str) -> None:
+        """Count telemetry that is left out; the client is told with what comes next."""
+        self.missed += 1
+        self._untold[topic] += 1
+
     def update(self, key: str, message: Message) -> bool:
         """Replace what waits under ``key``; tells whether something did."""
         was_waiting = self._latest.pop(key, None) is not None

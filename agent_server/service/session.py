@@ -17,13 +17,14 @@ from agent_server.protocol import convert
 from agent_server.protocol import messages as m
 from agent_server.recording.records import BodyGone, Tick, WindowDone, WindowSkipped
 from agent_server.scene.rulebook import Rules
-from agent_server.service.audience import Client
+from agent_server.service.audience import Audience, Client
 from agent_server.service.avatar import Avatar
 from agent_server.service.camera import Camera, Eyes
 from agent_server.service.context import Context
 from agent_server.service.core import Core, Job, PendingWindow
 from agent_server.service.delivery import Delivery
 from agent_server.service.journal import Journal
+from agent_server.service.load import Load, LoadGauge
 from agent_server.service.sensing import Sensing
 from agent_server.service.store import Saved, SessionStore
 from agent_server.service.watching import Decided, Watcher
@@ -74,6 +75,7 @@ class Session:
         avatar: Where the person is shown.
         eyes: What finds faces in images, or None where images are not taken.
         watchers: Who is told of its decisions.
+        gauge: How loaded the server is.
     """
 
     def __init__(
@@ -89,6 +91,7 @@ class Session:
         avatar: Avatar,
         eyes: Eyes | None = None,
         watchers: Sequence[Watcher] = (),
+        gauge: LoadGauge | None = None,
     ) -> None:
         self.id = session
         self._worker = worker
@@ -96,7 +99,10 @@ class Session:
         self._journal = journal
         self._avatar = avatar
         self._core = Core(session, settings, rules, worker.models)
-        self._context = Context(session, self._core, clock, journal, avatar, watchers)
+        self._gauge = gauge or LoadGauge()
+        self._context = Context(
+            session, self._core, clock, journal, avatar, watchers, Audience(self._gauge)
+        )
         self.audience = self._context.audience
         self.counters = self._context.counters
         self.recent: deque[Decided] = deque(maxlen=RECENT)
@@ -191,7 +197,6 @@ class Session:
         for client in self.audience.clients:
             client.outbox.close(code, reason)
         self._avatar.forget(self.id)
-        self._journal.close()
 
     async def _work(self) -> None:
         while True:
@@ -291,6 +296,10 @@ class Session:
             self._jobs.pop()
             self.counters["skipped_windows"] += 1
             self._journal.append_core(WindowSkipped(skipped.window.end_ns, skipped.window.index))
+                if self._gauge.load >= Load.WINDOWS and job.window.index % 2:
+                    self.counters["windows_left_out"] += 1
+                    self._journal.append_core(WindowSkipped(job.window.end_ns, job.window.index))
+                    continue
 
     # ------------------------------------------------------------------ output
 

@@ -81,6 +81,11 @@ class InferenceWorker:
 
     Args:
         models: The models.
+
+    Attributes:
+        models: The models of the batches to come.
+        largest_batch: Most windows that were run together.
+        busy_since_s: When the present batch began, on ``time.monotonic``; None between batches.
     """
 
     def __init__(self, models: Models) -> None:
@@ -88,6 +93,7 @@ class InferenceWorker:
         self._waiting: list[tuple[Window, asyncio.Future[Inference]]] = []
         self._wake = asyncio.Event()
         self.largest_batch = 0
+        self.busy_since_s: float | None = None
 
     @property
     def waiting(self) -> int:
@@ -121,7 +127,11 @@ class InferenceWorker:
                     continue
                 self.largest_batch = max(self.largest_batch, len(batch))
                 windows = [window for window, _ in batch]
-                results = await loop.run_in_executor(thread, _infer_each, self.models, windows)
+                self.busy_since_s = time.monotonic()
+                try:
+                    results = await loop.run_in_executor(thread, _infer_each, self.models, windows)
+                finally:
+                    self.busy_since_s = None
                 for (_, future), result in zip(batch, results, strict=True):
                     if future.done():
                         continue

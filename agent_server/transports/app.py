@@ -124,7 +124,15 @@ def create_app(hub: Hub, page: Path, access: Access = OPEN) -> FastAPI:
     async def readyz() -> JSONResponse:
         """Whether sessions may be sent here: the models are warm, the server does not stop."""
         status = 200 if hub.is_ready else 503
-        return JSONResponse({"ready": hub.is_ready, "models": hub.models.hashes}, status)
+        watchdog = hub.watchdog
+        stalls = {"loop": watchdog.loop_stalls, "inference": watchdog.inference_stalls}
+        body = {
+            "ready": hub.is_ready,
+            "load": hub.gauge.load.name.lower(),
+            "stalls": stalls,
+            "models": hub.models.hashes,
+        }
+        return JSONResponse(body, status)
 
     @app.get("/metrics")
     async def metrics() -> Response:

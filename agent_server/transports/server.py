@@ -34,7 +34,6 @@ from agent_server.transports.app import create_app
 from agent_server.transports.door import Door
 from agent_server.transports.guard import is_loopback
 
-GOODBYE_S = 0.1
 PREDICTOR = "ma_wgan_server"
 CLASSIFIER = "interformer_server"
 SAMPLER = "hp_gan_server"
@@ -187,8 +186,7 @@ class _Server(uvicorn.Server):
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Stop in order: first the sessions, then the connections."""
-        self._hub.stop()
-        await asyncio.sleep(GOODBYE_S)
+        await self._hub.drain()
         await super().shutdown(sockets)
 
 
