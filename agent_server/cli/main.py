@@ -13,11 +13,13 @@ from agent_server.cli.convert import convert
 from agent_server.cli.demo import demo
 from agent_server.cli.doctor import doctor
 from agent_server.cli.gestures import gestures
+from agent_server.cli.qa import qa
 from agent_server.cli.recover import recover
 from agent_server.cli.replay import replay
 from agent_server.cli.schema import schema
 from agent_server.cli.serve import serve
 from agent_server.cli.token import token
+from agent_server.cli.tools import annotate, anonymise, cut, info, merge
 from agent_server.errors import AgentServerError
 from agent_server.logs import LogFormat, set_up_logs
 
@@ -30,6 +32,8 @@ app = typer.Typer(
 )
 for command in (demo, serve, replay, convert, recover, schema, config, token, doctor):
     app.command()(command)
+for command in (info, cut, merge, annotate, anonymise, qa):
+    app.command(rich_help_panel="Recordings")(command)
 app.command(name="check-config")(check_config)
 app.add_typer(gestures)
 app.add_typer(bench)

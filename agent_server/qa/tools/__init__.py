@@ -1,0 +1,1 @@
+"""Recordings cut, joined, labelled and made anonymous; each tool writes a new file."""
