@@ -12,13 +12,14 @@ import typer
 from agent_server.config import (
     AccessSettings,
     ModelSettings,
+    RecordingSettings,
     ServerSettings,
     Settings,
     load_settings,
 )
 from agent_server.errors import ConfigError
 
-_Section = TypeVar("_Section", ServerSettings, ModelSettings, AccessSettings)
+_Section = TypeVar("_Section", RecordingSettings, ServerSettings, ModelSettings, AccessSettings)
 
 ConfigOption = Annotated[
     Path | None, typer.Option("--config", "-c", help="TOML file with settings.")
@@ -36,6 +37,14 @@ ClassifierOption = Annotated[
 FuturesOption = Annotated[
     int | None,
     typer.Option(metavar="K", help="Futures that a window is classified with; 1 is the forecast."),
+]
+ParticipantOption = Annotated[
+    str | None,
+    typer.Option(metavar="PSEUDONYM", help="Who is recorded, by pseudonym; never the name."),
+]
+ConsentOption = Annotated[
+    bool | None,
+    typer.Option("--consent", help="The person has agreed to be recorded."),
 ]
 RulesOption = Annotated[
     Path | None, typer.Option(metavar="FILE", help="The room's rules: docs/rules.md.")
@@ -64,6 +73,8 @@ def settings_with(
     secret_file: Path | None = None,
     keys_file: Path | None = None,
     insecure: bool | None = None,
+    participant: str | None = None,
+    consent: bool | None = None,
 ) -> Settings:
     """Settings from a file, with what the command line names in their place.
 
@@ -88,6 +99,7 @@ def settings_with(
             models=_changed(
                 settings.models, predictor=predictor, classifier=classifier, futures=futures
             ),
+            recording=_changed(settings.recording, participant=participant, consent=consent),
             rules=settings.rules if rules is None else str(rules),
         )
     except ValueError as error:

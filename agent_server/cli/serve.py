@@ -12,10 +12,12 @@ from rich.console import Console
 from agent_server.cli.options import (
     ClassifierOption,
     ConfigOption,
+    ConsentOption,
     FuturesOption,
     HostOption,
     JsonOption,
     KeysFileOption,
+    ParticipantOption,
     PortOption,
     PredictorOption,
     RulesOption,
@@ -48,6 +50,8 @@ def serve(
         Path | None,
         typer.Option(metavar="DIR", help="Record every session into a file of this folder."),
     ] = None,
+    participant: ParticipantOption = None,
+    consent: ConsentOption = None,
     state: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Remember sessions over a restart in this folder."),
@@ -81,6 +85,8 @@ def serve(
         secret_file=secret_file,
         keys_file=keys_file,
         insecure=insecure,
+        participant=participant,
+        consent=consent,
     )
     access = load_access(settings.access, os.environ)
     check_exposure(settings, access)

@@ -7,6 +7,7 @@ Secrets are no settings: they come from files or environment variables of their 
 
 from agent_server.config.explain import explain
 from agent_server.config.load import load_settings, mistakes_in
+from agent_server.config.recording import RecordingSettings
 from agent_server.config.server import AccessSettings, ServerSettings, VmcSettings
 from agent_server.config.settings import Settings
 from agent_server.config.stages import (
@@ -26,6 +27,7 @@ __all__ = [
     "GateSettings",
     "GazeSettings",
     "ModelSettings",
+    "RecordingSettings",
     "ServerSettings",
     "Settings",
     "SubjectSettings",

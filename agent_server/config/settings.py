@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from agent_server.config.recording import RecordingSettings
 from agent_server.config.section import Section, unless
 from agent_server.config.server import AccessSettings, ServerSettings, VmcSettings
 from agent_server.config.stages import (
@@ -32,6 +33,7 @@ class Settings(Section, frozen=True):
     server: ServerSettings = ServerSettings()
     access: AccessSettings = AccessSettings()
     vmc: VmcSettings = VmcSettings()
+    recording: RecordingSettings = RecordingSettings()
     rules: str | None = None
 
     def contradictions(self) -> Iterator[str]:

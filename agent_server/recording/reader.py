@@ -12,13 +12,19 @@ from mcap.records import Channel, ChunkIndex, Metadata, MetadataIndex, Statistic
 
 from agent_server.domain.inputs import RawInput
 from agent_server.domain.label import Label
-from agent_server.domain.stamp import NS_PER_S
+from agent_server.domain.stamp import MAX_STAMP_NS, NS_PER_S
 from agent_server.errors import InvalidInput, RecordingError
 from agent_server.protocol import messages as m
 from agent_server.recording import topics
 from agent_server.recording.inputs import from_record
 from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
-from agent_server.recording.records import CompressedImage, CoreEntry, CoreRecord, LabelRecord
+from agent_server.recording.records import (
+    CompressedImage,
+    CoreEntry,
+    CoreRecord,
+    InputTimes,
+    LabelRecord,
+)
 from agent_server.recording.scan import (
     RECOVER_HINT,
     DamagedError,
@@ -102,11 +108,18 @@ class Recording:
         """All records of the known topics, in file order."""
         return self.records()
 
-    def records(self, only: Collection[str] | None = None) -> Iterator[Record]:
-        """Records in file order.
+    def records(
+        self,
+        only: Collection[str] | None = None,
+        start_ns: int = 0,
+        end_ns: int = MAX_STAMP_NS,
+    ) -> Iterator[Record]:
+        """Records in file order. Chunks that hold nothing of what is asked for are skipped.
 
         Args:
-            only: Names of the topics to read; None reads all. Chunks without them are skipped.
+            only: Names of the topics to read; None reads all.
+            start_ns: Earliest stamp to read.
+            end_ns: Latest stamp to read.
 
         Raises:
             DamagedError: At a chunk that cannot be read.
@@ -122,10 +135,14 @@ class Recording:
                 holds = index.message_index_offsets
                 if holds and holds.keys().isdisjoint(wanted):
                     continue
+                if index.message_end_time < start_ns or index.message_start_time > end_ns:
+                    continue
                 raw = read_record(
                     file, self.path, index.chunk_start_offset, self.summary.size_bytes
                 )
-                yield from self._decoded(raw, wanted)
+                for record in self._decoded(raw, wanted):
+                    if start_ns <= record.stamp_ns <= end_ns:
+                        yield record
 
     def events(self) -> Iterator[RawInput]:
         """What clients sent in, as domain values, in the order in which it entered the core.
@@ -160,6 +177,20 @@ class Recording:
             if isinstance(record.message, LabelRecord)
         ]
         return tuple(sorted(labels, key=lambda label: (label.onset_ns, label.offset_ns)))
+
+    def times(self) -> Iterator[tuple[int, int, int]]:
+        """When inputs came: their sequence, and when each was received and had been dealt with.
+
+        In nanoseconds since the recording began, on the clock of whoever recorded; nothing where
+        nobody took the time, as in a generated or converted recording.
+
+        Raises:
+            RecordingError: As :meth:`records` does.
+        """
+        for record in self.records((topics.TIMES.name,)):
+            if isinstance(record.message, InputTimes):
+                rows = record.message
+                yield from zip(rows.sequences, rows.received_ns, rows.taken_ns, strict=False)
 
     def _decoded(self, raw: RawRecord, wanted: "Mapping[int, Decoder]") -> Iterator[Record]:
         for item in raw.chunk():

@@ -50,6 +50,18 @@ class CompressedImage(msgspec.Struct, frozen=True):
     format: str = "jpeg"
 
 
+class InputTimes(Message, frozen=True, tag="times"):
+    """When inputs came and were dealt with, some inputs a record, column by column.
+
+    Times are those of the clock of whoever recorded, 0 when the recording began (``created``).
+    A capture time is on the sensor's clock; only differences of the two mean anything.
+    """
+
+    sequences: list[Index]
+    received_ns: list[Nanoseconds]
+    taken_ns: list[Nanoseconds]
+
+
 class CoreRecord(msgspec.Struct, frozen=True, omit_defaults=True, tag_field="kind"):
     """Base of what entered the synchronous core beside the sensor's and renderer's messages.
 

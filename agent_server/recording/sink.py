@@ -12,8 +12,9 @@ from mcap.writer import CompressionType, Writer
 
 from agent_server.domain.stamp import MAX_STAMP_NS, NS_PER_MS
 from agent_server.errors import RecordingError
+from agent_server.recording.holding import hold
 
-CHUNK_BYTES = 32 * 1024
+CHUNK_BYTES = 256 * 1024
 CHUNK_NS = 500 * NS_PER_MS
 LIBRARY = "agent-server"
 
@@ -50,6 +51,7 @@ class _WholeWrites:
 
     def __init__(self, raw: FileIO) -> None:
         self._raw = raw
+        hold(raw.fileno())
 
     def write(self, data: bytes) -> int:
         rest = memoryview(data)
@@ -77,7 +79,7 @@ class _WholeWrites:
 class McapSink:
     """Writes messages in zstd chunks with CRCs, then an index and a summary.
 
-    A chunk goes to the file at its limits: by default when it holds 32 KiB, or when a message is
+    A chunk goes to the file at its limits: by default when it holds 256 KiB, or when a message is
     500 ms or more away from the chunk's first one; :meth:`flush` closes it early. When writing
     fails, the file is cut back to its last whole chunk, from which it can be recovered.
 
@@ -111,6 +113,16 @@ class McapSink:
         self._chunk_start_ns = 0
         self._safe_size = 0
         self._do(lambda: self._mcap.start(library=LIBRARY))
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it takes messages: it was neither closed nor has it failed."""
+        return self._state is _State.OPEN
+
+    @property
+    def size(self) -> int:
+        """Bytes in the file so far: whole chunks, without an index."""
+        return self._safe_size
 
     def metadata(self, name: str, strings: Mapping[str, str]) -> None:
         """Write a metadata record.

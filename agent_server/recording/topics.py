@@ -4,7 +4,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from agent_server.protocol import messages as m
-from agent_server.recording.records import CompressedImage, CoreEntry, LabelRecord
+from agent_server.recording.records import (
+    CompressedImage,
+    CoreEntry,
+    InputTimes,
+    LabelRecord,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +39,14 @@ SCENE = Topic("/scene", "agent_server.SceneState", m.SceneState)
 DECISION = Topic("/decision", "agent_server.Decision", m.DecisionMessage)
 COMMAND = Topic("/command", "agent_server.Command", m.CommandMessage)
 LABEL = Topic("/label", "agent_server.Label", LabelRecord)
+TIMES = Topic("/times", "agent_server.InputTimes", InputTimes)
 CORE = Topic("/core", "agent_server.Core", CoreEntry)
 
 RAW_INPUTS: tuple[Topic, ...] = (SKELETON, FACE, AFFECT, GAZE, CALIBRATION, ACK, SCENE_EVENT)
 """What clients sent in, as it entered the core."""
 
 TOPICS: dict[str, Topic] = {
-    topic.name: topic for topic in (*RAW_INPUTS, IMAGE, SCENE, DECISION, COMMAND, LABEL, CORE)
+    topic.name: topic
+    for topic in (*RAW_INPUTS, IMAGE, SCENE, DECISION, COMMAND, LABEL, TIMES, CORE)
 }
 """Every topic by its name."""

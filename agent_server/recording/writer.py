@@ -13,7 +13,13 @@ from agent_server.protocol import messages as m
 from agent_server.recording import topics
 from agent_server.recording.inputs import to_record
 from agent_server.recording.metadata import METADATA_NAME, RecordingMetadata
-from agent_server.recording.records import CompressedImage, CoreEntry, LabelRecord, Time
+from agent_server.recording.records import (
+    CompressedImage,
+    CoreEntry,
+    InputTimes,
+    LabelRecord,
+    Time,
+)
 from agent_server.recording.schema import json_schema
 from agent_server.recording.sink import LIVE, ChunkLimits, McapSink
 from agent_server.recording.topics import Topic
@@ -28,12 +34,16 @@ _OUTPUTS: dict[type[Output], Topic] = {
 }
 
 
+TIMES_AT_ONCE = 64
+"""So many inputs share a record of their times."""
+
+
 class RecordingWriter:
     """One recording that is being written.
 
     Records stand in the file in the order in which they are appended; what enters the core is
     appended when it enters it. Sequence numbers count the records of the file from 0. A chunk
-    closes at its limits, by default 32 KiB or 500 ms of stamps; the owner calls :meth:`flush` so
+    closes at its limits, by default 256 KiB or 500 ms of stamps; the owner calls :meth:`flush` so
     that it also does when no more records come. Use it as a context manager, or call
     :meth:`close`.
 
@@ -53,10 +63,28 @@ class RecordingWriter:
         self._encoder = msgspec.json.Encoder()
         self._channels: dict[str, int] = {}
         self._sequence = 0
+        self._latest_ns = 0
+        self._times: list[tuple[int, int, int]] = []
 
-    def append_input(self, value: RawInput) -> None:
-        """What a client sent, as it entered the core."""
-        self._append(*to_record(value))
+    @property
+    def size(self) -> int:
+        """Bytes in the file so far."""
+        return self._sink.size
+
+    def append_input(self, value: RawInput, times: tuple[int, int] | None = None) -> None:
+        """What a client sent, as it entered the core.
+
+        Args:
+            value: What it sent.
+            times: When it came and when it had been dealt with, in nanoseconds since the
+                recording began; None where nobody knows.
+        """
+        topic, stamp_ns, record = to_record(value)
+        if times is not None:
+            self._times.append((self._sequence, *times))
+        self._append(topic, stamp_ns, record)
+        if len(self._times) >= TIMES_AT_ONCE:
+            self._append_times()
 
     def append_image(self, jpeg: bytes, stamp_ns: int) -> None:
         """An image that a face was looked for in, at its capture time."""
@@ -86,10 +114,13 @@ class RecordingWriter:
 
     def flush(self) -> None:
         """Close the chunk in progress, so that a crash from here on does not lose it."""
+        self._append_times()
         self._sink.flush()
 
     def close(self) -> None:
         """Finish the file with its index and summary. Does nothing the second time."""
+        if self._sink.is_open:
+            self._append_times()
         self._sink.close()
 
     def __enter__(self) -> Self:
@@ -103,6 +134,12 @@ class RecordingWriter:
     ) -> None:
         self.close()
 
+    def _append_times(self) -> None:
+        if self._times:
+            sequences, received, taken = map(list, zip(*self._times, strict=True))
+            self._times = []
+            self._append(topics.TIMES, self._latest_ns, InputTimes(sequences, received, taken))
+
     def _append(self, topic: Topic, stamp_ns: int, record: msgspec.Struct) -> None:
         channel = self._channels.get(topic.name)
         if channel is None:
@@ -110,3 +147,4 @@ class RecordingWriter:
             channel = self._channels[topic.name] = self._sink.channel(topic.name, "json", schema)
         self._sink.message(channel, stamp_ns, self._sequence, self._encoder.encode(record))
         self._sequence += 1
+        self._latest_ns = stamp_ns

@@ -51,6 +51,7 @@ class WaitingImage:
     client: Client
     jpeg: bytes
     stamp_ns: int
+    arrival_ns: int
 
 
 class Camera:
@@ -66,10 +67,10 @@ class Camera:
         self._latest: WaitingImage | None = None
         self._wake = asyncio.Event()
 
-    def push(self, client: Client, jpeg: bytes, stamp_ns: int) -> bool:
+    def push(self, client: Client, jpeg: bytes, stamp_ns: int, arrival_ns: int) -> bool:
         """Take an image; tells whether one that still waited was given up for it."""
         was_waiting = self._latest is not None
-        self._latest = WaitingImage(client, jpeg, stamp_ns)
+        self._latest = WaitingImage(client, jpeg, stamp_ns, arrival_ns)
         self._wake.set()
         return was_waiting
 

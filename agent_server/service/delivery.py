@@ -122,10 +122,11 @@ class Delivery:
 
     def _take_ack(self, client: Client, message: m.AckMessage) -> None:
         context = self._context
-        ack = convert.ack_from_message(message, context.now())
+        arrival_ns = context.clock.now_ns()
+        ack = convert.ack_from_message(message, context.timeline.now(arrival_ns))
         heard = context.core.acknowledge(ack)
         context.counters["acks" if heard.taken else "stale_acks"] += 1
-        context.journal.append_input(ack)
+        context.journal.append_input(ack, arrival_ns)
         self.deliver(heard.commands, ack.stamp_ns)
         if heard.taken:
             self._save()
@@ -145,9 +146,10 @@ class Delivery:
             InvalidInput: If the room has no such object or state.
         """
         context = self._context
+        arrival_ns = context.clock.now_ns()
         commands = context.core.change_object(event)
         context.counters["scene_events"] += 1
-        context.journal.append_input(event)
+        context.journal.append_input(event, arrival_ns)
         self.deliver(commands, event.stamp_ns)
 
     def _reconcile(self, renderer: Client, now_ns: int) -> None:

@@ -13,8 +13,8 @@ from agent_server.recording.writer import Output
 class Journal(Protocol):
     """Takes everything that enters and leaves a session, in the order in which it does."""
 
-    def append_input(self, value: RawInput) -> None:
-        """The core took what a client sent."""
+    def append_input(self, value: RawInput, arrival_ns: int) -> None:
+        """The core took what a client sent, which came when the server's clock showed this."""
         ...
 
     def append_image(self, jpeg: bytes, stamp_ns: int) -> None:
@@ -29,6 +29,15 @@ class Journal(Protocol):
         """A decision was made, a command issued, or the room has changed."""
         ...
 
+    def take_failure(self) -> str | None:
+        """Why nothing is written any more, the first time that it is asked after that."""
+        ...
+
+    @property
+    def lost(self) -> int:
+        """How much was not written."""
+        ...
+
     def close(self) -> None:
         """The session is over."""
         ...
@@ -37,7 +46,9 @@ class Journal(Protocol):
 class NoJournal:
     """Writes nothing down."""
 
-    def append_input(self, value: RawInput) -> None:
+    lost = 0
+
+    def append_input(self, value: RawInput, arrival_ns: int) -> None:
         """Do nothing."""
 
     def append_image(self, jpeg: bytes, stamp_ns: int) -> None:
@@ -48,6 +59,10 @@ class NoJournal:
 
     def append_output(self, message: Output, stamp_ns: int) -> None:
         """Do nothing."""
+
+    def take_failure(self) -> str | None:
+        """Nothing can fail."""
+        return None
 
     def close(self) -> None:
         """Do nothing."""

@@ -58,7 +58,7 @@ class Sensing:
                 self._take_skeleton(client, message, arrival_ns)
             case m.FacePoints() | m.PackedFacePoints() | m.Blendshapes():
                 stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
-                self._look(faces.face_from_message(message, stamp_ns), client)
+                self._look(faces.face_from_message(message, stamp_ns), client, arrival_ns)
                 self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
             case m.Image():
                 self._take_image(client, message, arrival_ns)
@@ -82,7 +82,7 @@ class Sensing:
                 if face is None:
                     context.counters["images_without_face"] += 1
                 elif image.client in context.audience.clients:
-                    self._look(face, image.client)
+                    self._look(face, image.client, image.arrival_ns)
             except InvalidInput as error:
                 # The image was bad, or a face came in another way that is newer.
                 context.counters["rejected_messages"] += 1
@@ -105,7 +105,7 @@ class Sensing:
         jobs = context.core.observe(frame)
         self._accept(client, "body", message.originating_ns, stamp_ns, arrival_ns)
         context.counters["frames"] += 1
-        context.journal.append_input(frame)
+        context.journal.append_input(frame, arrival_ns)
         self._enqueue(jobs, arrival_ns)
         latest = perception.latest
         if latest is None or latest is shown:
@@ -121,7 +121,7 @@ class Sensing:
         context.core.feel(sample)
         self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
         context.counters["affect_samples"] += 1
-        context.journal.append_input(sample)
+        context.journal.append_input(sample, arrival_ns)
         context.audience.show("affect", convert.affect_telemetry(sample))
 
     def _take_gaze(self, client: Client, message: m.Gaze, arrival_ns: int) -> None:
@@ -131,14 +131,14 @@ class Sensing:
         context.core.gaze(sample)
         self._accept(client, "gaze", message.originating_ns, stamp_ns, arrival_ns)
         context.counters["gazes"] += 1
-        context.journal.append_input(sample)
+        context.journal.append_input(sample, arrival_ns)
 
     def _take_calibration(self, client: Client, message: m.Calibrate, arrival_ns: int) -> None:
         stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
         calibration = faces.calibration_from_message(message, stamp_ns)
         calibrated = self._context.core.calibrate(calibration)
         self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
-        self._context.journal.append_input(calibration)
+        self._context.journal.append_input(calibration, arrival_ns)
         self._show_calibration(calibrated, client)
 
     def _take_image(self, client: Client, message: m.Image, arrival_ns: int) -> None:
@@ -153,9 +153,9 @@ class Sensing:
         stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
         self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
         counters["images"] += 1
-        counters["skipped_images"] += self._camera.push(client, message.jpeg, stamp_ns)
+        counters["skipped_images"] += self._camera.push(client, message.jpeg, stamp_ns, arrival_ns)
 
-    def _look(self, face: Face, client: Client) -> None:
+    def _look(self, face: Face, client: Client, arrival_ns: int) -> None:
         context = self._context
         began_ns = context.clock.now_ns()
         try:
@@ -168,7 +168,7 @@ class Sensing:
         for watcher in context.watchers:
             watcher.read_affect((context.clock.now_ns() - began_ns) / NS_PER_S)
         context.counters["faces"] += 1
-        context.journal.append_input(face)
+        context.journal.append_input(face, arrival_ns)
         context.avatar.show_face(context.id, face)
         context.audience.show("affect", convert.affect_telemetry(sample))
         self._show_calibration(calibrated, client)

@@ -271,6 +271,7 @@ class Session:
         while True:
             await asyncio.sleep(TICK_S)
             self.delivery.wait_no_longer()
+            self._tell_of_recording()
             arrival_ns = self._clock.now_ns()
             is_busy = self._jobs or self._is_inferring
             is_quiet = self._context.timeline.idle_ns(arrival_ns) >= QUIET_NS
@@ -281,6 +282,14 @@ class Session:
             jobs, commands = self._core.tick(now_ns)
             self._enqueue(jobs, arrival_ns)
             self.delivery.deliver(commands, now_ns)
+
+    def _tell_of_recording(self) -> None:
+        """Tell the monitors, once, that nothing is recorded any more."""
+        if (failure := self._journal.take_failure()) is not None:
+            self.counters["recording_failures"] += 1
+            self.audience.show("error", m.ErrorMessage("recording_failed", failure))
+        if self._journal.lost:
+            self.counters["unrecorded"] = self._journal.lost
 
     def _enqueue(self, jobs: Iterable[Job], arrival_ns: int) -> None:
         for job in jobs:

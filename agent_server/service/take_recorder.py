@@ -97,7 +97,7 @@ class TakeRecorder(NoJournal):
         self._tell(OtherSession(session))
         return NoJournal()
 
-    def append_input(self, value: RawInput) -> None:
+    def append_input(self, value: RawInput, arrival_ns: int) -> None:
         """Write what the sensor sends, from the first frame of a body on."""
         if isinstance(value, SkeletonFrame):
             self._write(lambda: self._append_frame(value))

@@ -7,6 +7,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
 from importlib import resources
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 import uvicorn
@@ -80,25 +81,39 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
 
     Raises:
         RuleError: If the rule file is wrong.
-        ConfigError: If the folder of sessions cannot be written, or the avatar program's host has
-            no address.
+        ConfigError: If the folder of sessions or of recordings cannot be written, or the avatar
+            program's host has no address.
     """
     clock = SystemClock()
+    room = load_room(settings, models)
     open_journal = None
     if record_to is not None:
-        record_to.mkdir(parents=True, exist_ok=True)
+        try:
+            record_to.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ConfigError(
+                f"{record_to} cannot be made to record into: {error.strerror or error}; name "
+                "another folder with --record"
+            ) from error
         open_journal = partial(
             recorder,
             record_to,
             models=models,
             clock=clock,
-            with_images=settings.face.record_images,
+            settings=settings,
+            rules=_rule_file(settings).read_bytes(),
         )
     state = settings.server.state
     store = None if state is None else FolderStore(Path(state), clock.wall_ns())
-    room = load_room(settings, models)
     avatar = open_avatar(settings.vmc)
     return Hub(settings, room, models, clock, open_journal, store, avatar)
+
+
+def _rule_file(settings: Settings) -> Traversable:
+    """The room's rules as a file, which was read and found right."""
+    if settings.rules is not None:
+        return Path(settings.rules)
+    return resources.files("agent_server.scene") / "room.toml"
 
 
 def load_room(settings: Settings, models: Models) -> Rules:

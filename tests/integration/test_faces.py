@@ -179,7 +179,7 @@ async def test_pictures_are_recorded_only_when_asked_for(models, tmp_path, with_
     settings = Settings(face=FaceSettings(record_images=with_images))
 
     def journal(name):
-        return recorder(tmp_path, name, models, SystemClock(), with_images=with_images)
+        return recorder(tmp_path, name, models, SystemClock(), settings, b"")
 
     data = jpeg(np.full((240, 320, 3), 120, np.uint8))
     async with session(models, settings=settings, journal=journal) as (server, sensor, monitor):

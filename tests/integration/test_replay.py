@@ -89,7 +89,9 @@ async def test_live_over_a_websocket_equals_the_replay_of_the_same_recording(tmp
 
 async def test_a_recorded_session_with_a_renderer_replays_to_the_same_decisions(tmp_path):
     models = fake_models(fail_on=frozenset({3, 17}))
-    open_journal = partial(recorder, tmp_path, models=models, clock=SystemClock())
+    open_journal = partial(
+        recorder, tmp_path, models=models, clock=SystemClock(), settings=SETTINGS, rules=b""
+    )
     async with (
         live(models, SETTINGS, open_journal) as server,
         server.join("monitor", hello=m.Hello("1.0", "t", topics=["decision"])) as monitor,
@@ -148,7 +150,8 @@ async def test_a_log_that_does_not_fit_its_frames_is_refused(tmp_path):
 
 async def test_a_disk_that_fails_does_not_stop_the_session(tmp_path, caplog):
     def to_nowhere(session):
-        return Recorder(tmp_path / "missing" / session, RecordingMetadata(session, "test"))
+        path = tmp_path / "missing" / session
+        return Recorder(path, RecordingMetadata(session, "test"), SystemClock())
 
     async with (
         live(settings=SETTINGS, open_journal=to_nowhere) as server,

@@ -36,7 +36,7 @@ def write(session: ModuleType, tmp_path: Path) -> Callable[[str], Path]:
         with RecordingWriter(path, session.METADATA) as writer:
             session.append_all(writer)
             for value in FACES if with_faces else ():
-                writer.append_input(value)
+                writer.append_input(value, (5, 7))
             if with_faces:
                 writer.append_image(b"\xff\xd8 jpeg", 3_000_000_007)
         return path

@@ -12,7 +12,8 @@ from agent_server.recording.topics import TOPICS
 
 TEXT = (Path(__file__).parents[3] / "docs" / "recordings.md").read_text()
 FULL = RecordingMetadata(
-    "s", "0", "none", "ntu", {"NAME": "1"}, "2025-01-01", "a", "b", "c"
+    *("s", "0", "none", "ntu", {"NAME": "1"}, "2025-01-01", "a", "b", "c"),
+    *("1f", "2e", "P07", True, 2),
 ).to_strings()
 
 

@@ -30,7 +30,7 @@ class Sensor(Person):
     def push(self, frame):
         """Stand in for the director: the journal is given the frame."""
         before = len(self.told)
-        self.recorder.append_input(frame)
+        self.recorder.append_input(frame, 0)
         return self.told[before:]
 
 
@@ -81,9 +81,9 @@ def test_the_file_holds_every_frame_as_it_came_and_a_label_a_repetition(sensor, 
 
 def test_the_face_is_recorded_while_there_is_a_body(sensor, tmp_path):
     anna = sensor(tmp_path, repetitions=1)
-    anna.recorder.append_input(AffectSample(0, 1.0, 1.0))
+    anna.recorder.append_input(AffectSample(0, 1.0, 1.0), 0)
     anna.stay(1)
-    anna.recorder.append_input(AffectSample(NS, -6.0, 5.0))
+    anna.recorder.append_input(AffectSample(NS, -6.0, 5.0), 0)
     anna.until(Done)
     recording = open_recording(anna.recorder.path)
     assert [e for e in recording.events() if isinstance(e, AffectSample)] == [

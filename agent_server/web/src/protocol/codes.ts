@@ -294,6 +294,14 @@ export const ERROR_CODES: Readonly<Record<string, ErrorCode>> = {
     meaning: "telemetry: a client's clock jumped",
     advice: "use a monotonic clock",
   },
+  recording_failed: {
+    meaning: "telemetry: nothing is recorded any more",
+    advice: "see to the disk",
+  },
+  forecast_drift: {
+    meaning: "telemetry: forecasts are worse than none",
+    advice: "see to the sensor",
+  },
   scene_differs: {
     meaning: "telemetry: renderer and room did not agree",
     advice: "see differences",

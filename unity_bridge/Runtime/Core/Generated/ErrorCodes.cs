@@ -95,6 +95,10 @@ namespace AgentServer
         public const string FaceSkew = "face_skew";
         /// <summary>Telemetry: a client's clock jumped.</summary>
         public const string ClockJump = "clock_jump";
+        /// <summary>Telemetry: nothing is recorded any more.</summary>
+        public const string RecordingFailed = "recording_failed";
+        /// <summary>Telemetry: forecasts are worse than none.</summary>
+        public const string ForecastDrift = "forecast_drift";
         /// <summary>Telemetry: renderer and room did not agree.</summary>
         public const string SceneDiffers = "scene_differs";
 
@@ -145,6 +149,8 @@ namespace AgentServer
             new ErrorCode(FaceFailed, "telemetry: an image was not read", "the next one may be"),
             new ErrorCode(FaceSkew, "telemetry: body and face too far apart", "one clock, more faces"),
             new ErrorCode(ClockJump, "telemetry: a client's clock jumped", "use a monotonic clock"),
+            new ErrorCode(RecordingFailed, "telemetry: nothing is recorded any more", "see to the disk"),
+            new ErrorCode(ForecastDrift, "telemetry: forecasts are worse than none", "see to the sensor"),
             new ErrorCode(SceneDiffers, "telemetry: renderer and room did not agree", "see differences"),
         };
 
