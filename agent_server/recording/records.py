@@ -114,6 +114,19 @@ class Restored(CoreRecord, frozen=True, tag="restored"):
     room: RoomState
 
 
+class ModelsChanged(CoreRecord, frozen=True, tag="models"):
+    """Other models decide from the next window on; ``models`` is all of them, name to hash."""
+
+    models: dict[str, str]
+
+
 CoreEntry = (
-    WindowDone | WindowSkipped | Tick | RendererChanged | SensorChanged | BodyGone | Restored
+    WindowDone
+    | WindowSkipped
+    | Tick
+    | RendererChanged
+    | SensorChanged
+    | BodyGone
+    | Restored
+    | ModelsChanged
 )

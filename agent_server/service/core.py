@@ -71,7 +71,7 @@ class Core:
 
     def __init__(self, session: str, settings: Settings, rules: Rules, models: Models) -> None:
         self._session = session
-        self._hashes = models.hashes
+        self.models: Mapping[str, str] = models.hashes
         self._rules = rules
         self._affect = AffectEstimator(models.affect, settings.face)
         self._gate = AffectGate(settings.gate, settings.gaze)
@@ -177,7 +177,7 @@ class Core:
             start_ns=window.start_ns,
             end_ns=window.end_ns,
             body_id=window.body_id,
-            models=self._hashes,
+            models=dict(self.models),
             quality=window.quality,
             forecast=forecast.source,
             forecast_failure=forecast.failure,
@@ -219,6 +219,10 @@ class Core:
         if attached:
             return self._room.attach_renderer(stamp_ns)
         return self._room.detach_renderer(stamp_ns)
+
+    def use_models(self, hashes: Mapping[str, str]) -> None:
+        """Say which models decide from here on, by name and hash."""
+        self.models = hashes
 
     def scene(self) -> SceneSnapshot:
         """The room as it is."""

@@ -82,7 +82,6 @@ class Hub:
     ) -> None:
         self.settings = settings
         self.clock = clock
-        self.models = models
         self._rules = rules
         self._open_journal = open_journal
         self._store = store or MemoryStore()
@@ -109,6 +108,15 @@ class Hub:
     def sessions(self) -> Mapping[str, Session]:
         """Open sessions by id."""
         return self._sessions
+
+    @property
+    def models(self) -> Models:
+        """The models, shared by all sessions."""
+        return self._worker.models
+
+    def use_models(self, models: Models) -> None:
+        """Let other models decide from the next batch on."""
+        self._worker.models = models
 
     @property
     def is_running(self) -> bool:

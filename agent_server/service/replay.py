@@ -19,12 +19,14 @@ from agent_server.domain.inputs import RawInput
 from agent_server.domain.motion import BodyLost
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import RecordingError
 from agent_server.protocol.convert import decision_body
 from agent_server.recording.reader import Recording
 from agent_server.recording.records import (
     BodyGone,
     CoreEntry,
+    ModelsChanged,
     RendererChanged,
     Restored,
     SensorChanged,
@@ -188,6 +190,12 @@ class _Follower(_Replay):
                 self._core.set_face(face)
             case Restored(room=room):
                 self._core.restore(room)
+            case ModelsChanged(stamp_ns=now_ns):
+                raise RecordingError(
+                    f"{self._recording.path}: from {now_ns / NS_PER_S:.1f} s on other models "
+                    "decided, which were swapped in while it was recorded; a replay has one set "
+                    "of models, so replay recordings of before and after the swap"
+                )
             case BodyGone(stamp_ns=now_ns, body_id=body_id):
                 self._core.lose_body(BodyLost(now_ns, body_id))
             case _:

@@ -15,7 +15,7 @@ from agent_server.domain.stamp import NS_PER_MS, NS_PER_S, to_ns
 from agent_server.errors import InferenceError
 from agent_server.protocol import convert
 from agent_server.protocol import messages as m
-from agent_server.recording.records import BodyGone, Tick, WindowDone, WindowSkipped
+from agent_server.recording.records import BodyGone, ModelsChanged, Tick, WindowDone, WindowSkipped
 from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Audience, Client
 from agent_server.service.avatar import Avatar
@@ -193,7 +193,7 @@ class Session:
             group.create_task(self._sensing.see(), name=f"{self.id}: images")
 
     def close(self, code: int, reason: str) -> None:
-        """Send all clients away and end the recording."""
+        """Send all clients away; the recording is the owner's to end."""
         for client in self.audience.clients:
             client.outbox.close(code, reason)
         self._avatar.forget(self.id)
@@ -229,6 +229,10 @@ class Session:
             return
         finally:
             self._is_inferring = False
+        if inference.models != self._core.models:
+            models = dict(inference.models)
+            self._journal.append_core(ModelsChanged(window.end_ns, models))
+            self._core.use_models(models)
         begin_ns = self._clock.now_ns()
         result = self._core.decide(pending, inference.forecast, inference.classification)
         end_ns = self._clock.now_ns()
@@ -296,6 +300,10 @@ class Session:
             if isinstance(job, PendingWindow):
                 self.counters["windows"] += 1
                 self._skip_waiting_window()
+                if self._gauge.load >= Load.WINDOWS and job.window.index % 2:
+                    self.counters["windows_left_out"] += 1
+                    self._journal.append_core(WindowSkipped(job.window.end_ns, job.window.index))
+                    continue
             self._jobs.append(_Waiting(job, arrival_ns))
             self._wake.set()
 
@@ -305,10 +313,6 @@ class Session:
             self._jobs.pop()
             self.counters["skipped_windows"] += 1
             self._journal.append_core(WindowSkipped(skipped.window.end_ns, skipped.window.index))
-                if self._gauge.load >= Load.WINDOWS and job.window.index % 2:
-                    self.counters["windows_left_out"] += 1
-                    self._journal.append_core(WindowSkipped(job.window.end_ns, job.window.index))
-                    continue
 
     # ------------------------------------------------------------------ output
 

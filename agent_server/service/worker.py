@@ -7,7 +7,7 @@ is the bundle's to say (``batch_exact``), so that a decision never depends on wh
 import asyncio
 import logging
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -33,12 +33,14 @@ class Inference:
         classification: Class probabilities.
         predict_ms: Time of the predictor's batch and of other futures, in milliseconds.
         classify_ms: Time of the classifier's batch, in milliseconds.
+        models: Hashes of all models that were in use, by name.
     """
 
     forecast: Forecast
     classification: Classification
     predict_ms: float
     classify_ms: float
+    models: Mapping[str, str]
 
 
 def infer(models: Models, windows: Sequence[Window]) -> list[Inference]:
@@ -57,8 +59,9 @@ def infer(models: Models, windows: Sequence[Window]) -> list[Inference]:
     classifications = classify(models.classifier, windows, forecasts)
     predict_ms = (between - start) / 1e6
     classify_ms = (time.perf_counter_ns() - between) / 1e6
+    hashes = models.hashes
     return [
-        Inference(forecast, classification, predict_ms, classify_ms)
+        Inference(forecast, classification, predict_ms, classify_ms, hashes)
         for forecast, classification in zip(forecasts, classifications, strict=True)
     ]
 

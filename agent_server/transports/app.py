@@ -9,20 +9,21 @@ from typing import Any
 import msgspec
 from fastapi import FastAPI, Request
 from fastapi.middleware.cors import CORSMiddleware
-from fastapi.responses import FileResponse, HTMLResponse, JSONResponse, Response
+from fastapi.responses import HTMLResponse, JSONResponse, Response
 from fastapi.staticfiles import StaticFiles
 from prometheus_client.exposition import CONTENT_TYPE_LATEST
 from starlette.types import Scope
 
-from agent_server import __version__, assets
+from agent_server import __version__
 from agent_server.errors import InvalidInput
-from agent_server.inference.manifest import MANIFEST_FILE, MODEL_FILE
 from agent_server.protocol.convert import skeleton_to_message
 from agent_server.protocol.schema import reference
 from agent_server.protocol.schema.json_schema import asyncapi
 from agent_server.service.auth import OPEN, Access, NotAdmitted
 from agent_server.service.hub import Hub
+from agent_server.service.swap import Swapper
 from agent_server.synthetic.stand_in import stand_in
+from agent_server.transports.bundles import bundle_router
 from agent_server.transports.guard import Guard, admitted, refused, require
 from agent_server.transports.websocket import websocket_router
 
@@ -40,9 +41,6 @@ DOCS_POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 """The reference runs nothing and asks for nothing."""
 CLIENT = "client.js"
 """The JavaScript client; pages of other servers may import it."""
-PAGE_NETWORKS = ("face_detector", "face_mesh")
-"""Bundles that the page runs."""
-FOR_GOOD = "public, max-age=31536000, immutable"
 
 
 async def _refuse(_: Request, error: Exception) -> Response:
@@ -86,13 +84,16 @@ def _page_files(page: Path) -> Iterator[str]:
         yield f"/{file.relative_to(page).as_posix().removesuffix('.gz')}"
 
 
-def create_app(hub: Hub, page: Path, access: Access = OPEN) -> FastAPI:
+def create_app(
+    hub: Hub, page: Path, access: Access = OPEN, swapper: Swapper | None = None
+) -> FastAPI:
     """Put the application together.
 
     Args:
         hub: The sessions; it runs as long as the application does.
         page: Folder of the built browser page.
         access: Who is admitted.
+        swapper: What changes the models, or None where they are not changed.
     """
 
     @asynccontextmanager
@@ -195,14 +196,7 @@ def create_app(hub: Hub, page: Path, access: Access = OPEN) -> FastAPI:
         }
         return Response(msgspec.json.encode(body), media_type="application/json")
 
-    @app.get("/v1/models/{name}/{file}")
-    async def face_network(name: str, file: str, sha256: str = "") -> Response:
-        """A face network, for browsers that read faces themselves."""
-        if name not in PAGE_NETWORKS or file not in (MANIFEST_FILE, MODEL_FILE):
-            return JSONResponse({"detail": "there is no such file of a face network"}, 404)
-        # What is asked for by its hash never changes.
-        cache = FOR_GOOD if sha256 else "no-cache"
-        return FileResponse(assets.bundles() / name / file, headers={"Cache-Control": cache})
+    app.include_router(bundle_router(swapper))
 
     if (page / "index.html").exists():
         app.mount("/", _Page(directory=page, html=True), name="page")

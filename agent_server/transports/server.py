@@ -1,11 +1,14 @@
 """Running the application under uvicorn."""
 
 import asyncio
+import logging
+import signal
 import socket
 import ssl
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
-from functools import partial
+import sys
+import threading
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -15,7 +18,7 @@ import uvicorn
 from agent_server import assets
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
-from agent_server.errors import ConfigError, RuleError
+from agent_server.errors import BundleError, ConfigError, RuleError
 from agent_server.inference.runtime import (
     OnnxAffect,
     OnnxClassifier,
@@ -27,13 +30,17 @@ from agent_server.scene.rulebook import Rules
 from agent_server.scene.rules import default_rules, load_rules
 from agent_server.service.auth import OPEN, Access
 from agent_server.service.hub import Hub
+from agent_server.service.journal import Journal
 from agent_server.service.models import Drawing, FaceNetworks, Models
 from agent_server.service.recorder import recorder
 from agent_server.service.store import FolderStore
+from agent_server.service.swap import Swapper
 from agent_server.service.vmc import open_avatar
 from agent_server.transports.app import create_app
 from agent_server.transports.door import Door
 from agent_server.transports.guard import is_loopback
+
+log = logging.getLogger(__name__)
 
 PREDICTOR = "ma_wgan_server"
 CLASSIFIER = "interformer_server"
@@ -54,20 +61,30 @@ def load_models(settings: Settings | None = None) -> Models:
     """
     shipped = assets.bundles()
     settings = settings or Settings()
-    chosen = settings.models
     mesh = MESHES[settings.face.mesh]
+    chosen = settings.models
     drawing = None
     if chosen.futures > 1:
         sampler = OnnxSampler(Path(chosen.sampler or shipped / SAMPLER), chosen.futures - 1)
         drawing = Drawing(sampler, chosen.futures, chosen.futures_quality)
+    predictor, classifier = bundle_folders(settings)
     return Models(
-        OnnxPredictor(Path(chosen.predictor or shipped / PREDICTOR)),
-        OnnxClassifier(Path(chosen.classifier or shipped / CLASSIFIER)),
+        OnnxPredictor(predictor),
+        OnnxClassifier(classifier),
         {source: OnnxAffect(shipped / f"affect_{source}", source) for source in AFFECT_SOURCES},
         FaceNetworks(
             OnnxFaceNetwork(shipped / DETECTOR, "detector"), OnnxFaceNetwork(shipped / mesh, "mesh")
         ),
         drawing,
+    )
+
+
+def bundle_folders(settings: Settings) -> tuple[Path, Path]:
+    """Where predictor and classifier are read from."""
+    chosen, shipped = settings.models, assets.bundles()
+    return (
+        Path(chosen.predictor or shipped / PREDICTOR),
+        Path(chosen.classifier or shipped / CLASSIFIER),
     )
 
 
@@ -86,7 +103,7 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
     """
     clock = SystemClock()
     room = load_room(settings, models)
-    open_journal = None
+    open_journal: Callable[[str], Journal] | None = None
     if record_to is not None:
         try:
             record_to.mkdir(parents=True, exist_ok=True)
@@ -95,18 +112,17 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
                 f"{record_to} cannot be made to record into: {error.strerror or error}; name "
                 "another folder with --record"
             ) from error
-        open_journal = partial(
-            recorder,
-            record_to,
-            models=models,
-            clock=clock,
-            settings=settings,
-            rules=_rule_file(settings).read_bytes(),
-        )
+        rule_text = _rule_file(settings).read_bytes()
+
+        def open_journal(session: str) -> Journal:
+            # Those in use when the session is opened, which need not be those of the start.
+            return recorder(record_to, session, hub.models, clock, settings, rule_text)
+
     state = settings.server.state
     store = None if state is None else FolderStore(Path(state), clock.wall_ns())
     avatar = open_avatar(settings.vmc)
-    return Hub(settings, room, models, clock, open_journal, store, avatar)
+    hub = Hub(settings, room, models, clock, open_journal, store, avatar)
+    return hub  # the journals look at it
 
 
 def _rule_file(settings: Settings) -> Traversable:
@@ -205,6 +221,33 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
+@contextmanager
+def _rereading(swapper: Swapper) -> Iterator[None]:
+    """Let the signal HUP mean that the bundles are read again."""
+    if sys.platform == "win32" or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    loop, tasks = asyncio.get_running_loop(), set[asyncio.Task[None]]()
+
+    def reread() -> None:
+        task = asyncio.create_task(_reread(swapper), name="reread models")
+        tasks.add(task)
+        task.add_done_callback(tasks.discard)
+
+    loop.add_signal_handler(signal.SIGHUP, reread)
+    try:
+        yield
+    finally:
+        loop.remove_signal_handler(signal.SIGHUP)
+
+
+async def _reread(swapper: Swapper) -> None:
+    try:
+        await swapper.reread()
+    except BundleError as error:
+        log.error("the models stay as they are: %s", error)
+
+
 @asynccontextmanager
 async def serving(
     hub: Hub, listener: socket.socket, access: Access = OPEN
@@ -221,10 +264,14 @@ async def serving(
     """
     settings = hub.settings
     http, websocket = Door(settings).protocols()
+    folder = settings.models.folder
+    swapper = Swapper(
+        hub, *bundle_folders(settings), allowed=None if folder is None else Path(folder)
+    )
     server = _Server(
         hub,
         uvicorn.Config(
-            create_app(hub, assets.page(), access),
+            create_app(hub, assets.page(), access, swapper),
             http=http,
             ws=websocket,
             ssl_certfile=settings.server.tls_cert,
@@ -245,7 +292,8 @@ async def serving(
         # uvicorn announces its start by an attribute alone.
         while not server.started and not task.done():  # noqa: ASYNC110
             await asyncio.sleep(0.01)
-        yield task
+        with _rereading(swapper):
+            yield task
     finally:
         server.should_exit = True
         await task

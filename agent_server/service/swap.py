@@ -1,0 +1,101 @@
+"""Changing the models of a running server, without losing a session.
+
+A bundle is loaded and checked, hashes and golden output, beside the one that runs, and takes its
+place between two batches only when all is well. Each session writes down from which window on
+the new one has decided.
+"""
+
+import asyncio
+import logging
+from dataclasses import replace
+from pathlib import Path
+from typing import Literal
+
+from agent_server.errors import BundleError, InvalidInput
+from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
+from agent_server.service.hub import Hub
+from agent_server.service.models import Models
+
+log = logging.getLogger(__name__)
+
+Swappable = Literal["predictor", "classifier"]
+
+
+class Swapper:
+    """Takes bundles into use.
+
+    Args:
+        hub: The sessions, whose models are changed.
+        predictor: Folder of the predictor's bundle now.
+        classifier: Folder of the classifier's.
+        allowed: Folder within which bundles may be named from outside; None allows nothing.
+    """
+
+    def __init__(self, hub: Hub, predictor: Path, classifier: Path, allowed: Path | None) -> None:
+        self._hub = hub
+        self._folders: dict[Swappable, Path] = {"predictor": predictor, "classifier": classifier}
+        self._allowed = None if allowed is None else allowed.resolve()
+        self._turn = asyncio.Lock()
+
+    async def take(self, which: Swappable, path: str) -> dict[str, str]:
+        """Take the bundle in a folder, named relative to the allowed one.
+
+        Returns:
+            The hashes of all models in use, by name.
+
+        Raises:
+            InvalidInput: If nobody may do so, or not from there.
+            BundleError: If the bundle is not good; all stays as it was.
+        """
+        if self._allowed is None:
+            raise InvalidInput(
+                "this server changes no models: name the folder from which it may take them, "
+                "folder in [models]",
+                field="path",
+                code="no_folder",
+            )
+        folder = (self._allowed / path).resolve()
+        if not folder.is_relative_to(self._allowed):
+            raise InvalidInput(
+                f"{path} lies outside the folder that models may be taken from: name a folder "
+                "within it",
+                field="path",
+                code="outside",
+            )
+        async with self._turn:
+            await self._change({**self._folders, which: folder}, (which,))
+        return self._hub.models.hashes
+
+    async def reread(self) -> None:
+        """Read both bundles again from where they are, both or none.
+
+        Raises:
+            BundleError: If one is not good; all stays as it was.
+        """
+        async with self._turn:
+            await self._change(self._folders, ("predictor", "classifier"))
+
+    async def _change(self, folders: dict[Swappable, Path], which: tuple[Swappable, ...]) -> None:
+        before = self._hub.models
+        after = await asyncio.to_thread(_loaded, before, folders, which)
+        labels, others = before.classifier.labels, after.classifier.labels
+        if labels != others:
+            raise BundleError(
+                f"{folders['classifier']} names the gestures {', '.join(others)}, and sessions "
+                f"were told {', '.join(labels)}: start the server with it"
+            )
+        self._folders = folders
+        if after.hashes == before.hashes:
+            log.info("the models are the same")
+            return
+        self._hub.use_models(after)
+        log.warning("models changed: %s", after.hashes)
+
+
+def _loaded(before: Models, folders: dict[Swappable, Path], which: tuple[Swappable, ...]) -> Models:
+    models = before
+    if "predictor" in which:
+        models = replace(models, predictor=OnnxPredictor(folders["predictor"]))
+    if "classifier" in which:
+        models = replace(models, classifier=OnnxClassifier(folders["classifier"]))
+    return models
