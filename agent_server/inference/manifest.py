@@ -140,6 +140,28 @@ class AffectManifest(Manifest, frozen=True):
     training: Training
 
 
+class ReactionManifest(Manifest, frozen=True):
+    """The manifest of a generator of reactions, whose encoder is a file beside ``model.onnx``.
+
+    Attributes:
+        task: ``react`` (the action and the first pose of a reaction -> the reaction).
+        skeleton: Joints of both people.
+        rate_hz: Frames a second.
+        frames: Longest action that is read at once.
+        latent: Size of the noise.
+        labels: What the people of the training set do.
+        training: How it was made.
+    """
+
+    task: Literal["react"]
+    skeleton: SkeletonName
+    rate_hz: int
+    frames: int
+    latent: int
+    labels: list[str]
+    training: Training
+
+
 class _Task(msgspec.Struct, frozen=True):
     """Enough of a manifest to tell which kind it is."""
 
@@ -210,7 +232,7 @@ def _check(folder: Path, path: Path, manifest: Manifest) -> None:
             f"{path} is the manifest of {manifest.name!r}, not of {folder.name!r}: a bundle has "
             "its folder's name, so rename the folder or export the model again"
         )
-    for name in HASHED_FILES:
+    for name in {**dict.fromkeys(HASHED_FILES), **manifest.files}:
         expected = manifest.files.get(name)
         if expected is None:
             raise BundleError(f"{path} gives no hash for {name}: export the model again")
@@ -226,9 +248,15 @@ def _check(folder: Path, path: Path, manifest: Manifest) -> None:
 
 
 def write_manifest(folder: Path, manifest: Manifest) -> None:
-    """Write ``manifest.json`` into ``folder``, with the hashes of the files beside it."""
+    """Write ``manifest.json`` into ``folder``, with the hashes of the files beside it.
+
+    Args:
+        folder: Of the bundle.
+        manifest: Its ``files`` may name more than the three that every bundle has.
+    """
+    names = {**dict.fromkeys(HASHED_FILES), **manifest.files}
     filled = msgspec.structs.replace(
-        manifest, files={name: sha256_of(folder / name) for name in HASHED_FILES}
+        manifest, files={name: sha256_of(folder / name) for name in names}
     )
     data = msgspec.json.format(msgspec.json.encode(filled), indent=2)
     (folder / MANIFEST_FILE).write_bytes(data + b"\n")

@@ -80,7 +80,8 @@ class InteractionSet:
         labels: Class names, in order.
         order: Where the files keep our joints.
         label_of: Path of a file in parts -> its class.
-        symmetric: Classes in which either person may be looked at.
+        symmetric: Classes in which either person may be the first; in SBU's lists it is always
+            the one who begins.
     """
 
     name: str
@@ -154,7 +155,7 @@ SBU = InteractionSet(
     ("walking", "kicking", "pushing", "shaking hands", "exchanging", "punching"),
     tuple(range(JOINTS)),
     lambda parts: SBU_NAMES[parts[1]],
-    ("walking", "shaking hands", "exchanging"),
+    (),
 )
 _K3HI_LABELS = (
     *("approaching", "departing", "exchanging", "kicking"),
@@ -282,7 +283,17 @@ class Pairs:
     @property
     def mask(self) -> torch.Tensor:
         """Shape (N, T), true where a frame counts."""
-        return torch.arange(self.reaction.shape[1]) < self.lengths[:, None]
+        frames = torch.arange(self.reaction.shape[1], device=self.lengths.device)
+        return frames < self.lengths[:, None]
+
+    def to(self, device: torch.device) -> "Pairs":
+        """The same on a device."""
+        return Pairs(
+            self.action.to(device),
+            self.reaction.to(device),
+            self.lengths.to(device),
+            self.labels.to(device),
+        )
 
 
 def _padded(motion: torch.Tensor, frames: int) -> torch.Tensor:

@@ -2,9 +2,10 @@
 
 import logging
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import onnx
@@ -33,15 +34,36 @@ def write_onnx(
         output_name: Name of the output.
     """
     batch = torch.export.Dim("batch", min=1, max=4096)
+    write_graph(network, (example,), path, [input_name], [output_name], ({0: batch},))
+
+
+def write_graph(
+    network: nn.Module,
+    examples: tuple[torch.Tensor, ...],
+    path: Path,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    shapes: Sequence[dict[int, Any]],
+) -> None:
+    """Export a network of any inputs, weights inside.
+
+    Args:
+        network: In evaluation mode.
+        examples: An input each; a free axis has at least two.
+        path: The file to write.
+        inputs: Names of the inputs.
+        outputs: Names of the outputs.
+        shapes: For each input its free axes.
+    """
     with _quiet():
         program = torch.onnx.export(
             network,
-            (example,),
+            examples,
             dynamo=True,
             opset_version=OPSET,
-            input_names=[input_name],
-            output_names=[output_name],
-            dynamic_shapes=({0: batch},),
+            input_names=inputs,
+            output_names=outputs,
+            dynamic_shapes=tuple(shapes),
             verbose=False,
         )
     if program is None:

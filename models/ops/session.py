@@ -8,6 +8,15 @@ import onnxruntime as ort
 from agent_server.domain.arrays import Float32
 
 
+def open_session(path: Path) -> ort.InferenceSession:
+    """A session on one thread that does not spin."""
+    options = ort.SessionOptions()
+    options.intra_op_num_threads = 1
+    options.inter_op_num_threads = 1
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+    return ort.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+
+
 class OnnxModel:
     """An ONNX file with one input.
 
@@ -16,11 +25,7 @@ class OnnxModel:
     """
 
     def __init__(self, path: Path) -> None:
-        options = ort.SessionOptions()
-        options.intra_op_num_threads = 1
-        options.inter_op_num_threads = 1
-        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-        self._session = ort.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+        self._session = open_session(path)
         self.input = self._session.get_inputs()[0].name
         self.output = self._session.get_outputs()[0].name
 

@@ -1,0 +1,1 @@
+"""InterFormer: an action of one person in, the reaction of another one out."""
