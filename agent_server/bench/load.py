@@ -1,149 +1,280 @@
-"""How many people one server follows at once: real clients against a server process."""
+"""How many people one server follows at once: real clients in processes of their own."""
 
 import asyncio
-import bisect
 import json
+import os
 import sys
+import tempfile
 import time
+import urllib.request
 from asyncio.subprocess import PIPE, Process
-from collections.abc import AsyncIterator
-from contextlib import AsyncExitStack, asynccontextmanager
-from dataclasses import dataclass, field
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
 
-from agent_server import __version__
-from agent_server.bench.figures import percentiles, resident_mb
-from agent_server.bench.stream import recorded_frames
-from agent_server.client.once import Client, join
-from agent_server.domain.stamp import NS_PER_S
+import msgspec
+from prometheus_client.parser import text_string_to_metric_families
+
+from agent_server.bench.crowd import WARM_UP_S, Plan, Sent, Told
+from agent_server.bench.figures import percentiles
+from agent_server.bench.stream import recorded_events
+from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import AgentServerError
 from agent_server.protocol import messages as m
-from agent_server.protocol.convert import skeleton_to_message
+from agent_server.protocol.codec import CODECS
+from agent_server.protocol.inputs import input_to_message, packed
+
+Stack = Literal["uvicorn", "websockets"]
+Coding = Literal["json", "msgpack"]
+STACKS: tuple[Stack, ...] = ("uvicorn", "websockets")
+SUBPROTOCOLS = {"json": m.SUBPROTOCOL_JSON, "msgpack": m.SUBPROTOCOL_MSGPACK}
+BOUND_MS = 50.0
+A_CROWD = 50
+"""People a client process plays; more of them would wait for each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """What a server is put under.
+
+    Attributes:
+        stack: ``uvicorn`` (what ships) or a plain listener of ``websockets``.
+        coding: What clients speak.
+        faces: Whether they send 478 landmarks at 10 Hz beside the body at 30 Hz.
+        seconds: For how long, after a warm-up.
+    """
+
+    stack: Stack = "uvicorn"
+    coding: Coding = "json"
+    faces: bool = True
+    seconds: float = 15.0
 
 
 @dataclass(frozen=True, slots=True)
 class LoadResult:
-    """Latency of decisions under load, clients and server on the same machine.
+    """Latency under load, clients and server on the same machine.
 
     Attributes:
-        sessions: Sessions at once, each a sensor at 30 Hz and a monitor of its decisions.
+        sessions: Sessions at once, each a sensor, a renderer that acks and a monitor.
+        load: What else is given.
         p50_ms: From sending the last frame of a window to getting its decision, median.
         p99_ms: Its 99th percentile.
-        dropped: Windows that the server skipped.
-        rss_mb: Resident memory of the server at the end, in MB; None where it is not known.
+        command_p50_ms: From sending that frame to getting the command, where one follows; None
+            without any.
+        command_p99_ms: Its 99th percentile.
+        dropped: Everything that the server did not use or did not send.
+        rss_mb: Resident memory of the server at the end, in MB.
         decisions: How many were measured.
-        late_ms: How late the clients themselves sent at worst, in milliseconds: when this is
-            large, the machine is too small for clients and server together.
-        seconds: For how long.
+        commands: How many were measured.
+        late_ms: How late the clients themselves sent at worst: when this is large, the machine
+            is too small, or too busy, for clients and server together.
+        server_cores: Processor time of the server over time.
+        machine_load: Runnable processes of the whole machine before it began, mean of a minute.
     """
 
     sessions: int
+    load: Load
     p50_ms: float
     p99_ms: float
+    command_p50_ms: float | None
+    command_p99_ms: float | None
     dropped: int
-    rss_mb: float | None
+    rss_mb: float
     decisions: int
+    commands: int
     late_ms: float
-    seconds: float
+    server_cores: float
+    machine_load: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether everybody was served in time and nothing was dropped."""
+        worst_ms = max(self.p99_ms, self.command_p99_ms or 0.0)
+        return worst_ms < BOUND_MS and not self.dropped
 
 
-@dataclass(slots=True)
-class _Tally:
-    latencies_ms: list[float] = field(default_factory=list)
-    skipped: dict[str, int] = field(default_factory=dict)
-    late_s: float = 0.0
+@dataclass(frozen=True, slots=True)
+class _Figures:
+    dropped: int
+    rss_mb: float
+    cpu_s: float
+    at_s: float
 
 
-async def measure_load(sessions: int, seconds: float) -> LoadResult:
-    """Start a server process, connect clients, and measure for ``seconds`` after a warm-up."""
-    frames = [skeleton_to_message(frame) for frame in recorded_frames("demo")]
-    tally = _Tally()
-    async with _server() as (process, url):
-        start_s = time.monotonic() + 2.0
-        async with AsyncExitStack() as stack:
-            pairs = [await _connect(stack, url, f"load-{i}") for i in range(sessions)]
-            async with asyncio.TaskGroup() as group:
-                for index, (monitor, sensor) in enumerate(pairs):
-                    # Sensors are not in step with each other.
-                    begin_s = max(start_s, time.monotonic()) + (index * 0.618 % 1.0) / 5
-                    person = _Person(frames, begin_s, seconds, tally)
-                    group.create_task(person.run(monitor, sensor, f"load-{index}"))
-            rss_mb = resident_mb(process.pid)
-    if not tally.latencies_ms:
+async def measure_load(sessions: int, load: Load) -> LoadResult:
+    """Start a server process, connect clients, and measure.
+
+    Raises:
+        AgentServerError: If the server or a client process fails.
+    """
+    machine_load = os.getloadavg()[0]
+    with tempfile.TemporaryDirectory() as folder:
+        stream = Path(folder) / "stream.msgpack"
+        stream.write_bytes(msgspec.msgpack.encode(_stream(load)))
+        async with _server(load.stack, sessions, Path(folder)) as url:
+            told, before, after = await _play(url, sessions, load, stream)
+    decisions = [ms for one in told for ms in one.decisions_ms]
+    commands = [ms for one in told for ms in one.commands_ms]
+    if not decisions:
         raise AgentServerError("no decision came back, so nothing was measured")
-    figures = percentiles(tally.latencies_ms)
+    figures = percentiles(decisions)
+    of_commands = percentiles(commands) if commands else None
     return LoadResult(
         sessions=sessions,
+        load=load,
         p50_ms=figures.p50_ms,
         p99_ms=figures.p99_ms,
-        dropped=sum(tally.skipped.values()),
-        rss_mb=rss_mb,
-        decisions=len(tally.latencies_ms),
-        late_ms=round(tally.late_s * 1000, 3),
-        seconds=seconds,
+        command_p50_ms=None if of_commands is None else of_commands.p50_ms,
+        command_p99_ms=None if of_commands is None else of_commands.p99_ms,
+        dropped=after.dropped - before.dropped,
+        rss_mb=round(after.rss_mb, 1),
+        decisions=len(decisions),
+        commands=len(commands),
+        late_ms=round(max(one.late_ms for one in told), 3),
+        server_cores=round((after.cpu_s - before.cpu_s) / (after.at_s - before.at_s), 3),
+        machine_load=round(machine_load, 2),
     )
 
 
-class _Person:
-    """One simulated person: a sensor that sends, and a monitor that takes the time."""
+async def find_capacity(
+    measure: Callable[[int], Awaitable[LoadResult]], start: int, step: int
+) -> list[LoadResult]:
+    """Double the sessions until the server does not keep up, then halve the gap down to ``step``.
 
-    def __init__(
-        self, frames: list[m.Skeleton], begin_s: float, seconds: float, tally: _Tally
-    ) -> None:
-        self._frames = [
-            frame
-            for frame in frames
-            if frame.originating_ns - frames[0].originating_ns < seconds * NS_PER_S
-        ]
-        self._begin_s = begin_s
-        self._tally = tally
-        self._stamps: list[int] = []
-        self._sent_s: list[float] = []
+    Args:
+        measure: Puts a server under so many sessions.
+        start: How many sessions to begin with.
+        step: How finely to look.
 
-    async def run(self, monitor: Client, sensor: Client, session: str) -> None:
-        listening = asyncio.create_task(self._listen(monitor, session))
-        await self._send(sensor)
-        await asyncio.sleep(0.5)
-        listening.cancel()
-
-    async def _send(self, sensor: Client) -> None:
-        first_ns = self._frames[0].originating_ns
-        for frame in self._frames:
-            due_s = self._begin_s + (frame.originating_ns - first_ns) / NS_PER_S
-            await asyncio.sleep(max(0.0, due_s - time.monotonic()))
-            now_s = time.monotonic()
-            self._tally.late_s = max(self._tally.late_s, now_s - due_s)
-            self._stamps.append(frame.originating_ns)
-            self._sent_s.append(now_s)
-            await sensor.send(frame)
-
-    async def _listen(self, monitor: Client, session: str) -> None:
-        async for message in monitor:
-            if isinstance(message, m.DecisionMessage):
-                now_s = time.monotonic()
-                last = bisect.bisect_left(self._stamps, message.decision.end_ns)
-                self._tally.latencies_ms.append((now_s - self._sent_s[last]) * 1000)
-            elif isinstance(message, m.StatsMessage):
-                self._tally.skipped[session] = message.skipped_windows
+    Returns:
+        All runs, by their sessions.
+    """
+    runs: dict[int, LoadResult] = {}
+    good, bad, sessions = 0, 0, start
+    while sessions and sessions not in runs:
+        runs[sessions] = await measure(sessions)
+        if runs[sessions].holds:
+            good = sessions
+        else:
+            bad = sessions
+        middle = (good + bad) // (2 * step) * step
+        sessions = 2 * good if not bad else middle if bad - good > step else 0
+    return [runs[key] for key in sorted(runs)]
 
 
-async def _connect(stack: AsyncExitStack, url: str, session: str) -> tuple[Client, Client]:
-    watch = m.Hello(m.PROTOCOL, "bench", __version__, topics=["decision", "stats"])
-    monitor = await stack.enter_async_context(join(url, session, "monitor", hello=watch))
-    sensor = await stack.enter_async_context(join(url, session, "sensor"))
-    return monitor, sensor
+def told_in_a_line(run: LoadResult) -> str:
+    """For people who wait."""
+    verdict = "holds" if run.holds else "does not hold"
+    return (
+        f"{run.load.stack}, {run.sessions} sessions: p50 {run.p50_ms:.1f}, "
+        f"p99 {run.p99_ms:.1f} ms, {run.dropped} dropped, {run.rss_mb:.0f} MB, "
+        f"{run.server_cores:.2f} cores: {verdict}"
+    )
+
+
+def largest(runs: list[LoadResult]) -> int:
+    """The most sessions with which the server kept up; 0 if it never did."""
+    return max((run.sessions for run in runs if run.holds), default=0)
+
+
+def _stream(load: Load) -> list[Sent]:
+    codec = CODECS[SUBPROTOCOLS[load.coding]]
+    sent = []
+    for event in recorded_events("demo"):
+        is_body = isinstance(event, SkeletonFrame)
+        if is_body or load.faces:
+            message = input_to_message(event)
+            wire = codec.encode(packed(message) if load.coding == "msgpack" else message)
+            data = wire.encode() if isinstance(wire, str) else wire
+            sent.append(Sent(event.originating_ns, is_body, data))
+    return sent
+
+
+async def _play(
+    url: str, sessions: int, load: Load, stream: Path
+) -> tuple[list[Told], _Figures, _Figures]:
+    crowds = -(-sessions // A_CROWD)
+    processes = []
+    for index in range(crowds):
+        people = list(range(index, sessions, crowds))
+        plan = Plan(url, str(stream), SUBPROTOCOLS[load.coding], people, load.seconds)
+        process = await asyncio.create_subprocess_exec(
+            *(sys.executable, "-m", "agent_server.bench.crowd"),
+            stdin=PIPE,
+            stdout=PIPE,
+            limit=2**26,
+        )
+        processes.append(process)
+        await _say(process, msgspec.json.encode(plan) + b"\n")
+        await _hear(process)
+    begin_s = time.monotonic() + 0.5
+    for process in processes:
+        await _say(process, f"{begin_s}\n".encode())
+    await asyncio.sleep(begin_s + WARM_UP_S - time.monotonic())
+    before = await asyncio.to_thread(_figures, url)
+    await asyncio.sleep(load.seconds)
+    after = await asyncio.to_thread(_figures, url)
+    told = [msgspec.json.decode(await _hear(process), type=Told) for process in processes]
+    for process in processes:
+        await process.wait()
+    return told, before, after
+
+
+async def _say(process: Process, line: bytes) -> None:
+    assert process.stdin is not None  # noqa: S101 - it was asked for
+    process.stdin.write(line)
+    await process.stdin.drain()
+
+
+async def _hear(process: Process) -> bytes:
+    assert process.stdout is not None  # noqa: S101 - it was asked for
+    line = await process.stdout.readline()
+    if not line:
+        raise AgentServerError("a process of the measurement has ended; it says why above")
+    return line
+
+
+def _figures(url: str) -> _Figures:
+    with urllib.request.urlopen(f"{url}/metrics", timeout=30) as answer:  # noqa: S310 - our own
+        text = answer.read().decode()
+    samples = [
+        sample for family in text_string_to_metric_families(text) for sample in family.samples
+    ]
+
+    def total(name: str) -> float:
+        return sum(sample.value for sample in samples if sample.name == name)
+
+    return _Figures(
+        dropped=int(total("agent_server_dropped_total")),
+        rss_mb=total("process_resident_memory_bytes") / 2**20,
+        cpu_s=total("process_cpu_seconds_total"),
+        at_s=time.monotonic(),
+    )
 
 
 @asynccontextmanager
-async def _server() -> AsyncIterator[tuple[Process, str]]:
+async def _server(stack: Stack, sessions: int, folder: Path) -> AsyncIterator[str]:
     """A server in a process of its own, on a free port."""
-    command = (sys.executable, "-m", "agent_server", "serve", "--port", "0", "--json")
-    process = await asyncio.create_subprocess_exec(*command, stdout=PIPE)
+    settings = folder / "settings.toml"
+    settings.write_text(
+        f"[server]\nport = 0\nmax_sessions = {sessions}\nmax_connections = {4 * sessions + 8}\n"
+        f"max_connections_per_address = {4 * sessions + 8}\n"
+    )
+    command = {
+        "uvicorn": ("-m", "agent_server", "serve", "--json", "--config", str(settings)),
+        "websockets": ("-m", "agent_server.bench.plain", str(settings)),
+    }
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, *command[stack], stdout=PIPE, stderr=asyncio.subprocess.DEVNULL
+    )
     try:
         assert process.stdout is not None  # noqa: S101 - it was asked for
         line = await process.stdout.readline()
         if not line:
             raise AgentServerError("the server did not start; `agent-server serve` says why")
-        yield process, json.loads(line)["address"]
+        yield json.loads(line)["address"]
     finally:
         if process.returncode is None:
             process.terminate()

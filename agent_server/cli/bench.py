@@ -5,11 +5,23 @@ from typing import Annotated
 
 import msgspec
 import typer
+from rich.console import Console
 
 from agent_server.bench.decision import measure_decisions
 from agent_server.bench.face import measure_faces
 from agent_server.bench.ingest import measure_ingest
-from agent_server.bench.load import LoadResult, measure_load
+from agent_server.bench.load import (
+    STACKS,
+    Coding,
+    Load,
+    LoadResult,
+    Stack,
+    find_capacity,
+    largest,
+    measure_load,
+    told_in_a_line,
+)
+from agent_server.bench.load_plot import load_plot
 from agent_server.bench.reactions import measure_reactions, played, recorded
 from agent_server.cli.options import FuturesOption, JsonOption, run, settings_with
 from agent_server.config import Settings
@@ -71,18 +83,52 @@ def reactions(
 
 @bench.command()
 def load(
-    sessions: Annotated[int, typer.Option(min=1, help="People at once.")] = 10,
-    seconds: Annotated[float, typer.Option(min=2.0, help="For how long.")] = 15.0,
+    sessions: Annotated[
+        int | None, typer.Option(min=1, help="People at once; else the most is looked for.")
+    ] = None,
+    seconds: Annotated[float, typer.Option(min=2.0, help="For how long, each time.")] = 15.0,
+    body_only: Annotated[
+        bool, typer.Option("--body-only", help="Send no landmarks beside the body.")
+    ] = False,
+    coding: Annotated[Coding, typer.Option(help="What the clients speak.")] = "json",
+    stack: Annotated[Stack, typer.Option(help="What carries the websockets.")] = "uvicorn",
+    compare: Annotated[bool, typer.Option("--compare", help="Measure every stack.")] = False,
+    start: Annotated[int, typer.Option(min=1, help="Where to begin to look.")] = 25,
+    step: Annotated[int, typer.Option(min=1, help="How finely to look.")] = 10,
+    plot: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Draw the runs into an SVG file.")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Real websocket clients against a server in another process; body only."""
-    results: list[LoadResult] = []
+    """Real websocket clients in other processes: latency, drops and memory."""
+    chosen = [
+        Load(each, coding, not body_only, seconds) for each in (STACKS if compare else (stack,))
+    ]
+    console = Console(stderr=True)
+    results: dict[str, list[LoadResult]] = {}
 
     async def measure() -> None:
-        results.append(await measure_load(sessions, seconds))
+        for one in chosen:
+
+            async def told(people: int, one: Load = one) -> LoadResult:
+                result = await measure_load(people, one)
+                console.print(told_in_a_line(result))
+                return result
+
+            results[one.stack] = (
+                await find_capacity(told, start, step)
+                if sessions is None
+                else [await told(sessions)]
+            )
 
     run(measure())
-    _show(results[0], as_json=as_json)
+    if plot is not None:
+        plot.write_text(load_plot(results), "utf-8")
+    if sessions is not None and not compare:
+        _show(results[stack][0], as_json=as_json)
+        return
+    summary = {name: {"largest": largest(runs), "runs": runs} for name, runs in results.items()}
+    _show(summary, as_json=as_json)
 
 
 def _show(result: object, *, as_json: bool) -> None:
