@@ -12,6 +12,7 @@ from agent_server.cli.config import check_config, config
 from agent_server.cli.convert import convert
 from agent_server.cli.demo import demo
 from agent_server.cli.doctor import doctor
+from agent_server.cli.export import export
 from agent_server.cli.gestures import gestures
 from agent_server.cli.qa import qa
 from agent_server.cli.recover import recover
@@ -32,8 +33,8 @@ app = typer.Typer(
 )
 for command in (demo, serve, replay, convert, recover, schema, config, token, doctor):
     app.command()(command)
-for command in (info, cut, merge, annotate, anonymise, qa):
-    app.command(rich_help_panel="Recordings")(command)
+for tool in (info, cut, merge, annotate, anonymise, export, qa):
+    app.command(rich_help_panel="Recordings")(tool)
 app.command(name="check-config")(check_config)
 app.add_typer(gestures)
 app.add_typer(bench)

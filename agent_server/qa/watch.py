@@ -6,8 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from agent_server.config import Settings
-from agent_server.domain.arrays import Float32
+from agent_server.domain.affect import AffectSample, Calibrated
+from agent_server.domain.arrays import Float32, Float64
 from agent_server.domain.decision import Decision
+from agent_server.domain.face import Face
 from agent_server.domain.gesture import Classification
 from agent_server.domain.motion import FRAME_NS, SEEN_FRAMES, Forecast, Window
 from agent_server.domain.stamp import NS_PER_MS
@@ -36,11 +38,26 @@ class WatchedCore(Core):
 
     Attributes:
         sights: Everything decided on so far, in order.
+        affect: Valence and arousal that came, or were read from a face, in order.
     """
 
     def __init__(self, session: str, settings: Settings, rules: Rules, models: Models) -> None:
         super().__init__(session, settings, rules, models)
         self.sights: list[Sight] = []
+        self.affect: list[AffectSample] = []
+
+    def feel(self, sample: AffectSample) -> None:
+        """Take an affect sample, and keep it."""
+        super().feel(sample)
+        self.affect.append(sample)
+
+    def look(
+        self, face: Face, estimate: Float64 | None = None
+    ) -> tuple[AffectSample, Calibrated | None]:
+        """Take a face, and keep what was read from it."""
+        read = super().look(face, estimate)
+        self.affect.append(read[0])
+        return read
 
     def decide(
         self, pending: PendingWindow, forecast: Forecast, classification: Classification

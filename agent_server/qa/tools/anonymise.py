@@ -90,7 +90,10 @@ def anonymise(
         face="none" if face == "none" and old.face is not None else old.face,
         joint_format=old.joint_format,
         bundles=old.bundles,
+        config=old.config,
+        rules=old.rules,
         licence=old.licence,
+        consent=old.consent,
         description="Anonymised: faces, names and wall times were taken out.",
     )
     records = 0

@@ -73,7 +73,7 @@ def cut(source: Path, output: Path, start_ns: int, end_ns: int) -> CutReport:
         rest = [entry for entry in rest if not entry.is_derived and not isinstance(entry.item, Ack)]
     metadata = recording.metadata
     if not exact:
-        metadata = replace(metadata, face=_face_at(recording, start_ns))
+        metadata = replace(metadata, face=_face_at(recording, start_ns), part=1)
     part = [Entry(max(t.label.onset_ns, start_ns), t) for t in kept] + rest
     if not exact:
         part = [*_room_at(recording, start_ns), *(entry.moved(-start_ns) for entry in part)]

@@ -41,10 +41,12 @@ class Entry:
     Attributes:
         stamp_ns: Its time.
         item: What it holds.
+        times: When an input came and had been dealt with, as the recorder noted it.
     """
 
     stamp_ns: int
     item: Item
+    times: tuple[int, int] | None = None
 
     @property
     def is_input(self) -> bool:
@@ -57,7 +59,7 @@ class Entry:
         return isinstance(self.item, CoreEntry | Output)
 
     def moved(self, by_ns: int) -> "Entry":
-        """An input, image or label at another time."""
+        """An input, image or label at another time; when it came is told no more."""
         item = self.item
         if isinstance(item, SensorInput):
             item = replace(item, originating_ns=item.originating_ns + by_ns)
@@ -78,15 +80,18 @@ def read_entries(recording: Recording) -> Iterator[Entry]:
     Raises:
         RecordingError: If the recording cannot be read.
     """
+    times = {sequence: (received, taken) for sequence, received, taken in recording.times()}
     for record in recording.records():
-        yield Entry(record.stamp_ns, _item(record.topic, record.message, record.stamp_ns))
+        if record.topic != topics.TIMES.name:
+            item = _item(record.topic, record.message, record.stamp_ns)
+            yield Entry(record.stamp_ns, item, times.get(record.sequence))
 
 
 def write_entry(writer: RecordingWriter, entry: Entry) -> None:
     """Append a record."""
     item = entry.item
     if isinstance(item, RawInput):
-        writer.append_input(item)
+        writer.append_input(item, entry.times)
     elif isinstance(item, CoreEntry):
         writer.append_core(item)
     elif isinstance(item, Tagged):

@@ -65,7 +65,7 @@ def merge(sources: Sequence[Path], output: Path, gap_ns: int) -> MergeReport:
             field="sources",
         )
     names = ", ".join(path.name for path in sources)
-    metadata = replace(first.metadata, description=f"Joined from {names}.", created=None)
+    metadata = replace(first.metadata, description=f"Joined from {names}.", created=None, part=1)
     count = 0
     with whole_file(output) as path, RecordingWriter(path, metadata, AT_ONCE) as writer:
         for recording, start_ns in zip(recordings, starts, strict=False):

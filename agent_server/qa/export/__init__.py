@@ -1,0 +1,1 @@
+"""Recordings for other tools: tables, arrays, and scenes in three dimensions."""
