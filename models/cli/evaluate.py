@@ -16,6 +16,7 @@ from models.cli.options import (
     CACHE,
     CLASSIFIER,
     PREDICTOR,
+    SAMPLER,
     AffectInputOption,
     CacheOption,
     ClassifierBundleOption,
@@ -35,6 +36,7 @@ from models.evaluation.affect import affect_report, read_affect
 from models.evaluation.affect_baselines import affect_baselines
 from models.evaluation.affect_page import write_affect_page
 from models.evaluation.forecasters import bundled, forecaster
+from models.evaluation.futures_page import futures_report
 from models.evaluation.gesture_page import write_gesture_page
 from models.evaluation.landmarks import compare_with_mediapipe, on_one_core
 from models.evaluation.latency import bundle_latency
@@ -44,6 +46,7 @@ from models.evaluation.prediction import evaluate
 from models.evaluation.protocols import SERVER_PROTOCOLS, protocol_named
 from models.evaluation.real_streams import shipped_report
 from models.evaluation.report import classifier_report, compare, server_report
+from models.evaluation.sampled import bundled_sampler
 from models.evaluation.sim2real import sim2real_report
 from models.evaluation.thesis import thesis_report
 from models.export.face import landmarker_file
@@ -182,6 +185,28 @@ def evaluate_gestures(
             found = msrc12_stream_report(data, runs / "msrc12")
         case _:
             found = _shipped(benchmark, model_of(bundle), model_of(predictor), data, cache)
+    show(found, as_json)
+
+
+@app.command("futures")
+def evaluate_futures(
+    data: DataOption,
+    sampler: Annotated[Path, typer.Option("--sampler", help="Bundle that draws.")] = SAMPLER,
+    bundle: ClassifierBundleOption = CLASSIFIER,
+    predictor: PredictorBundleOption = PREDICTOR,
+    runs: Annotated[
+        Path, typer.Option("--runs", help="HP-GAN's run `hp_gan`, and those of its losses.")
+    ] = Path("runs/futures"),
+    report: ReportOption = None,
+    as_json: JsonOption = False,
+    cache: CacheOption = CACHE,
+) -> None:
+    """Diversity, seam and quality of drawn futures, and what they are worth to decisions.
+
+    Runs of the losses are trained where they are missing, and only measured again else.
+    """
+    models = model_of(bundle).batched, model_of(predictor).batched
+    found = futures_report(*models, bundled_sampler(sampler), runs, data, cache, report)
     show(found, as_json)
 
 

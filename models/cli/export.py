@@ -13,6 +13,7 @@ from models.cli.options import (
     CACHE,
     CLASSIFIER,
     PREDICTOR,
+    SAMPLER,
     CacheOption,
     DataOption,
     PredictorBundleOption,
@@ -23,6 +24,7 @@ from models.export.classifier import export_classifier
 from models.export.face import export_faces
 from models.export.face_shapes import export_face_shapes
 from models.export.predictor import export_predictor
+from models.export.sampler import export_sampler
 
 FACE_SHAPES = Path(face.__file__).with_name(face.ASSET)
 app = typer.Typer(no_args_is_help=True, help="Write a bundle from a run.")
@@ -61,6 +63,19 @@ def _export(
 ) -> None:
     torch.set_num_threads(1)
     show(export_predictor(family, runs, out, version, data, cache).results, as_json=False)
+
+
+@app.command("hp_gan")
+def export_hp_gan(
+    data: DataOption,
+    run: RunOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = SAMPLER,
+    version: VersionOption = "0.1.0",
+    cache: CacheOption = CACHE,
+) -> None:
+    """Export, check and measure a GAN that draws several futures."""
+    torch.set_num_threads(1)
+    show(export_sampler(run, out, version, data, cache).results, as_json=False)
 
 
 @app.command("interformer")

@@ -34,6 +34,7 @@ AffectInputOption = Annotated[Source, typer.Option("--input", help="What a face 
 CACHE = Path("runs/cache")
 ARTIFACTS = Path(__file__).parents[1] / "artifacts"
 PREDICTOR = ARTIFACTS / "ma_wgan_server"
+SAMPLER = ARTIFACTS / "hp_gan_server"
 CLASSIFIER = ARTIFACTS / "interformer_server"
 C = TypeVar("C", MaWganConfig, SimlpeConfig, HpGanConfig, InterformerConfig)
 

@@ -1,6 +1,7 @@
 """How long a model takes for one window, on one thread."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +19,17 @@ def latency_ms(model: OnnxModel, window: Float32, repeats: int = 500) -> dict[st
         window: Shape (1, frames, 9, 3).
         repeats: How often.
     """
+    return percentiles_ms(lambda: model(window), repeats)
+
+
+def percentiles_ms(call: Callable[[], object], repeats: int = 500) -> dict[str, float]:
+    """p50 and p95 in milliseconds of anything, after a warm-up."""
     for _ in range(50):
-        model(window)
+        call()
     times = np.empty(repeats)
     for i in range(repeats):
         began = time.perf_counter_ns()
-        model(window)
+        call()
         times[i] = time.perf_counter_ns() - began
     p50, p95 = np.percentile(times, [50, 95]) / 1e6
     return {"p50_ms": round(float(p50), 3), "p95_ms": round(float(p95), 3)}

@@ -22,6 +22,21 @@ FAMILIES = {
     "velocity functions (manifold-aware Wasserstein GAN).",
     "simlpe": "siMLPe (Back to MLP): linear maps over the DCT of the past.",
 }
+SAMPLED = {"cmu": SETS["server"], "synthetic": SETS["server-synthetic"]}
+DRAWN_ROWS = {
+    "windows": "windows",
+    "error_mm": "distance of a future from the truth, mm",
+    "best_mm": "of the nearest of four",
+    "mean_mm": "of their mean",
+    "still_mm": "of the last pose repeated",
+    "apart_mm": "two futures apart, mm",
+    "jump_mm": "first step, mm",
+    "true_jump_mm": "the truth's",
+    "seam_mm": "first step less the last seen one, mm",
+    "true_seam_mm": "the truth's",
+    "plausible": "futures that are judged real",
+    "real_plausible": "true futures that are judged real",
+}
 GESTURE_ROWS = {
     "1s+2s_predicted": "1 s seen, 2 s predicted (as it runs)",
     "1s+last_frame": "1 s seen, last frame repeated",
@@ -61,6 +76,52 @@ def _measured(results: Mapping[str, Any]) -> list[Mapping[str, Any]]:
         row for row in results.values() if isinstance(row, dict) and "protocol" in row
     ]
     return [results, *nested] if "protocol" in results else nested
+
+
+def sampler_card(manifest: MotionManifest) -> str:
+    """The card of a sampler."""
+    lines = [
+        head(manifest, f"Draws up to {manifest.draws} futures of 2 s from the last 1 s."),
+        f"Inputs `seen` (B, {manifest.input_frames}, 9, 3) float32 and `draw` (B,) int64, the "
+        f"number of a draw in 0..{manifest.draws - 1}; outputs `future` "
+        f"(B, {manifest.output_frames}, 9, 3) and `quality` (B,), how probably the future is real. "
+        "Metres, origin at the navel of the last seen frame, axes of the camera frame, "
+        f"{manifest.rate_hz} Hz. The random vectors are inside the graph: a number means the same "
+        "future of a motion everywhere.",
+        "",
+        "HP-GAN: a recurrent generator from sequence to sequence with chance in its states, taught "
+        "by a discriminator. A quality network was trained beside the two and taught neither.",
+        "",
+        "## Measured",
+        "Held-out windows every second; four draws of each.",
+        "",
+        "| | " + " | ".join(SAMPLED.values()) + " |",
+        "|---" * (len(SAMPLED) + 1) + "|",
+    ]
+    for key, words in DRAWN_ROWS.items():
+        cells = " | ".join(
+            percent(row[key]) if key.endswith("plausible") else f"{row[key]:g}"
+            for row in (manifest.results[name] for name in SAMPLED)
+        )
+        lines.append(f"| {words} | {cells} |")
+    times = ", ".join(
+        f"{count}: p50 {row['p50_ms']} ms, p95 {row['p95_ms']} ms"
+        for count, row in manifest.results["latency"].items()
+    )
+    return "\n".join(
+        [
+            *lines,
+            "",
+            f"- draws of one window in one batch on one thread: {times}",
+            f"- torch and ONNX differ by at most {manifest.results['onnx_difference']:.1e}",
+            "",
+            *made(
+                manifest,
+                f"the quality network chose the checkpoint of update {manifest.results['update']}, "
+                "on validation people",
+            ),
+        ]
+    )
 
 
 def classifier_card(manifest: MotionManifest) -> str:
@@ -161,7 +222,7 @@ def decision_lines(row: Mapping[str, Any]) -> list[str]:
 
 def tail(manifest: MotionManifest) -> list[str]:
     """Time, exactness and origin."""
-    training, results = manifest.training, manifest.results
+    results = manifest.results
     same = "the same bits as" if manifest.batch_exact else "other bits than"
     return [
         f"- one window on one thread: p50 {results['latency']['p50_ms']} ms, "
@@ -169,11 +230,19 @@ def tail(manifest: MotionManifest) -> list[str]:
         f"- torch and ONNX differ by at most {results['onnx_difference']:.1e}",
         f"- a row of a batch of up to 16 has {same} a batch of one",
         "",
+        *made(manifest, "the checkpoint was chosen on validation people and recordings"),
+    ]
+
+
+def made(manifest: MotionManifest, chosen: str) -> list[str]:
+    """Data, command, time and the choice of the checkpoint."""
+    training = manifest.training
+    return [
         "## How it was made",
         *(f"- {s.name}: {_origin(s.synthetic)}, licence: {s.licence}" for s in training.data),
         f"- `{training.command}`",
         f"- seed {training.seed}, {training.wall_s / 60:.0f} minutes on {training.hardware}",
-        "- the checkpoint was chosen on validation people and recordings",
+        f"- {chosen}",
         "",
         _caveat(manifest),
         "",

@@ -76,22 +76,22 @@ class TrainConfig:
     """
 
     network: NetworkConfig = NetworkConfig()
-    steps: int = 2_500
-    batch: int = 48
+    steps: int = 1_400
+    batch: int = 32
     learning_rate: float = 5e-4
-    critic_rate: float = 5e-4
-    critic_steps: int = 1
+    critic_rate: float = 1e-3
+    critic_steps: int = 2
     judge_rate: float = 5e-4
     adversarial: float = 1.0
     consistency: float = 50.0
     diversity: float = 1.0
     energy: float = 50.0
-    bones: float = 50.0
+    bones: float = 100.0
     classes: float = 0.1
     penalty: float = 10.0
     ema: float = 0.998
-    validate_every: int = 250
-    judged_from: int = 750
+    validate_every: int = 100
+    judged_from: int = 500
     synthetic_sequences: int = 2_000
 
     def __post_init__(self) -> None:
@@ -103,7 +103,7 @@ class TrainConfig:
 
 
 SERVER = TrainConfig()
-SHORT = replace(SERVER, steps=700, validate_every=100, judged_from=400)
+SHORT = replace(SERVER, steps=200, batch=16, validate_every=50, judged_from=150)
 
 CONFIGS: dict[str, TrainConfig] = {
     "server": SERVER,

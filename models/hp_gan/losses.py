@@ -6,8 +6,8 @@ import torch
 
 from models.ops.losses import TINY, bone_loss
 
-APART_M = 0.1
-"""Two futures that are so far apart on average have about a third of the diversity term left."""
+LEAST_APART_M = 0.01
+"""How far apart the futures of a body are wanted that does not move at all."""
 
 
 def consistency(seen: torch.Tensor, future: torch.Tensor) -> torch.Tensor:
@@ -22,22 +22,31 @@ def consistency(seen: torch.Tensor, future: torch.Tensor) -> torch.Tensor:
 
 
 def diversity(
-    one: torch.Tensor, other: torch.Tensor, z: torch.Tensor, other_z: torch.Tensor
+    futures: Sequence[torch.Tensor],
+    draws: Sequence[torch.Tensor],
+    true: torch.Tensor,
+    last: torch.Tensor,
 ) -> torch.Tensor:
     """1 where two futures of one past are alike, towards 0 the farther apart they are.
 
-    Futures whose random vectors are close may be close too: distances are divided by that of the
-    vectors, which is 1 on average.
+    They are wanted as far apart as the body goes in truth, so that a body at rest need not be
+    thrown about. Futures whose random vectors are close may be close too.
 
     Args:
-        one: Shape (B, F, J, 3), metres.
-        other: The same.
-        z: Shape (B, Z), what ``one`` was drawn with.
-        other_z: The same of ``other``.
+        futures: Two of shape (B, F, J, 3), metres.
+        draws: What they were drawn with, shape (B, Z) each.
+        true: What came, shape (B, F, J, 3).
+        last: The last seen pose, shape (B, J, 3).
     """
-    apart = torch.sqrt(((one - other) ** 2).sum(-1) + TINY).mean(dim=(1, 2))
-    away = (z - other_z).norm(dim=1) / (2 * z.shape[1]) ** 0.5
-    return torch.exp(-apart / (APART_M * away)).mean()
+    apart = _distance(futures[0], futures[1])
+    away = (draws[0] - draws[1]).norm(dim=1) / (2 * draws[0].shape[1]) ** 0.5  # 1 on average
+    wanted = away * (_distance(true, last[:, None]) + LEAST_APART_M)
+    return torch.exp(-apart / wanted).mean()
+
+
+def _distance(one: torch.Tensor, other: torch.Tensor) -> torch.Tensor:
+    """Mean over frames and joints, shape (B,)."""
+    return torch.sqrt(((one - other) ** 2).sum(-1) + TINY).mean(dim=(1, 2))
 
 
 def energy(future: torch.Tensor, true: torch.Tensor, last: torch.Tensor) -> torch.Tensor:

@@ -70,7 +70,9 @@ class HpGanLearner:
         future = self.generator(seen, z)
         motion = whole_features(seen, future)
         terms = physical_terms(seen, future, true, self.source.layout.bones)
-        terms["diversity"] = diversity(*future.chunk(2), *z.chunk(2))
+        terms["diversity"] = diversity(
+            future.chunk(2), z.chunk(2), windows.future, windows.seen[:, -1]
+        )
         terms["adversarial"] = -self.critic(motion).mean()
         terms["classes"] = self._class_loss(motion, labels)
         weighted = [getattr(config, name) * term for name, term in terms.items()]

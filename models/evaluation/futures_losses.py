@@ -1,0 +1,45 @@
+"""What HP-GAN's losses do: the same short training with all of them, and with one left out."""
+
+from pathlib import Path
+from typing import Any
+
+from agent_server.domain.arrays import Float32
+from models.evaluation.sampled import drawn_figures, trained_sampler
+from models.hp_gan.config import CONFIGS
+from models.hp_gan.sampler import Sampler
+from models.hp_gan.train import load_hp_gan, train
+from models.training.run import INFO, Run
+
+ROWS = {
+    "all": "short",
+    "without diversity": "short_without_diversity",
+    "without consistency": "short_without_consistency",
+}
+DRAWS = 4
+
+
+def losses_report(
+    folder: Path, held: dict[str, tuple[Float32, Float32]], data: Path, cache: Path, seed: int = 0
+) -> dict[str, Any]:
+    """Figures of each row on held-out windows; runs that are there are only measured again.
+
+    Args:
+        folder: Where the runs are kept, one folder a row.
+        held: Set -> seen (N, 25, 9, 3) and true future (N, 50, 9, 3), metres.
+        data: Folder that holds the set folders.
+        cache: Folder of generated recordings.
+        seed: Of every training.
+    """
+    rows: dict[str, Any] = {}
+    for name, config in ROWS.items():
+        place = folder / config
+        if not (place / INFO).exists():
+            command = f"python -m models train hp_gan --config {config} --data DIR --out RUN"
+            train(CONFIGS[config], Run(place, CONFIGS[config], seed, command, False), data, cache)
+        generator, _, judge = load_hp_gan(place)
+        draw = trained_sampler(Sampler(generator, generator.config.noise, judge).eval())
+        rows[name] = {
+            where: drawn_figures(draw(seen, DRAWS), seen, true)
+            for where, (seen, true) in held.items()
+        }
+    return rows
