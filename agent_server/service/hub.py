@@ -143,6 +143,8 @@ class Hub:
                 self.watchdog.stop()
                 self.stop()
                 self._avatar.close()
+                for watcher in self._watchers:
+                    watcher.close()
                 await self._close_journals()
                 for task in (worker, lag, warming):
                     task.cancel()

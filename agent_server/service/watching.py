@@ -62,6 +62,9 @@ class Watcher:
     def read_affect(self, seconds: float) -> None:
         """Affect was read from a face, which took this long."""
 
+    def close(self) -> None:
+        """The server stops."""
+
 
 class DecisionLog(Watcher):
     """Writes decisions to the log: those with a command at INFO, all others at DEBUG."""

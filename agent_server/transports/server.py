@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import os
 import signal
 import socket
 import ssl
@@ -35,6 +36,7 @@ from agent_server.service.models import Drawing, FaceNetworks, Models
 from agent_server.service.recorder import recorder
 from agent_server.service.store import FolderStore
 from agent_server.service.swap import Swapper
+from agent_server.service.tracing import open_traces
 from agent_server.service.vmc import open_avatar
 from agent_server.transports.app import create_app
 from agent_server.transports.door import Door
@@ -98,8 +100,8 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
 
     Raises:
         RuleError: If the rule file is wrong.
-        ConfigError: If the folder of sessions or of recordings cannot be written, or the avatar
-            program's host has no address.
+        ConfigError: If the folder of sessions or of recordings cannot be written, the avatar
+            program's host has no address, or traces are asked for and cannot be made.
     """
     clock = SystemClock()
     room = load_room(settings, models)
@@ -121,7 +123,9 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
     state = settings.server.state
     store = None if state is None else FolderStore(Path(state), clock.wall_ns())
     avatar = open_avatar(settings.vmc)
-    hub = Hub(settings, room, models, clock, open_journal, store, avatar)
+    traces = open_traces(os.environ, clock)
+    watchers = () if traces is None else (traces,)
+    hub = Hub(settings, room, models, clock, open_journal, store, avatar, watchers)
     return hub  # the journals look at it
 
 
