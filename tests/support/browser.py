@@ -1,6 +1,7 @@
 """A real browser on a page of the server."""
 
 import asyncio
+import json
 import shutil
 from contextlib import asynccontextmanager
 
@@ -47,14 +48,16 @@ async def browsing(url, *flags, permissions=()):
             await browser.close()
 
 
-async def until(page, condition, within_s=20.0):
+async def until(page, condition, within_s=20.0, draws=True):
     """Step the page until its state fits ``condition``, and give that state."""
+    step = f"window.agentPage.step(100, {json.dumps(draws)})"
     async with asyncio.timeout(within_s):
         while True:
-            await page.evaluate("window.agentPage.step(100)")
+            await page.evaluate(step)
             state = await page.evaluate("window.agentPage.state()")
             if condition(state):
                 # The state may be newer than the last picture.
-                await page.evaluate("window.agentPage.step(0)")
+                if draws:
+                    await page.evaluate("window.agentPage.step(0)")
                 return state
             await asyncio.sleep(0.05)

@@ -14,14 +14,17 @@ import { Notice } from "./panels/notice.ts";
 import { PlayPanel } from "./panels/play.ts";
 import { RoomPanel } from "./panels/room.ts";
 import { Counters, StatusStrip } from "./panels/status.ts";
+import { TimelinePanel } from "./panels/timeline.ts";
 import type { Place } from "./place.ts";
 import { clipsOf } from "./play/clips.ts";
 import { StandIn, type StandInState } from "./play/stand_in.ts";
 import { jsonCodec } from "./protocol/codec.ts";
 import { Actor } from "./room/actor.ts";
 import type { RoomView } from "./room/view.ts";
+import { History } from "./state/history.ts";
 import type { Row } from "./state/log.ts";
-import { Store } from "./state/store.ts";
+import { Playhead } from "./state/playhead.ts";
+import { Store, type Moment } from "./state/store.ts";
 import { summaryOf, type Summary } from "./state/summary.ts";
 import { affectNow, decisionNow, isFresh, problemOf, sensorState } from "./state/view.ts";
 import { nextState } from "./state/states.ts";
@@ -43,6 +46,9 @@ export class App {
   readonly #place: Place;
   readonly #stage: Stage | null;
   readonly #store = new Store();
+  readonly #history = new History();
+  readonly #head = new Playhead();
+  readonly #timeline: TimelinePanel;
   readonly #connection: Connection;
   readonly #strip = new StatusStrip(byId("session"), byId("lamps"), byId("gauges"));
   readonly #counters = new Counters(byId("counters"), byId("server"));
@@ -94,6 +100,18 @@ export class App {
     this.#play.connect(this.#standIn);
     this.#play.render(this.#standIn.state);
     this.#actLine.render(this.#roomPhase, null);
+    this.#timeline = new TimelinePanel(byId("timeline"), {
+      toggle: () => {
+        if (this.#head.isStopped) this.#head.go(this.#now);
+        else this.#head.stop(this.#now);
+      },
+      seek: (time) => this.#head.seek(time, this.#now),
+      jump: (direction) => {
+        const mark = this.#history.nextMark(this.#head.time(this.#now), direction);
+        if (mark !== null) this.#head.seek(mark, this.#now);
+      },
+      goLive: () => this.#head.goLive(),
+    });
     byId("resize-body").addEventListener("click", () => this.#resizeBody());
     const { monitorUrl: url, session } = place;
     this.#connection = new Connection(
@@ -102,6 +120,7 @@ export class App {
       {
         onMessage: (message) => {
           this.#store.apply(message, this.#now);
+          this.#history.add(message, this.#now, !this.#head.isLive);
           this.#actor?.hear(message);
         },
         onUnreadable: ({ message, field }) => {
@@ -156,7 +175,7 @@ export class App {
     });
   }
 
-  /** Let the page's clock reach `now`, and show what there is to show. */
+  /** Let the page's clock reach `now`: the panels follow, the pictures are drawn by `draw`. */
   advance(now: number): void {
     const dtMs = Math.max(0, now - this.#now);
     this.#now = now;
@@ -166,6 +185,12 @@ export class App {
     if (revision === this.#drawn.revision && now - this.#drawn.at < REFRESH_MS) return;
     this.#drawn = { revision, at: now };
     this.#renderPanels();
+  }
+
+  /** Draw the room and the person. */
+  draw(): void {
+    this.#stage?.draw();
+    this.#roomView?.draw();
   }
 
   summary(): Summary {
@@ -207,14 +232,20 @@ export class App {
     return problemOf(status, this.#directory, this.#sensor, this.#place, hasCamera);
   }
 
+  /** What was known when the moment came that is looked at. */
+  get #moment(): Moment {
+    return this.#head.isLive ? this.#store : this.#history.at(this.#head.time(this.#now));
+  }
+
   #showBody(dtMs: number): void {
     const stage = this.#stage;
     if (stage === null) return;
-    const { pose, forecast } = this.#store;
-    const joints = isFresh(pose, this.#now) ? pose.value.joints : null;
+    const { pose, forecast } = this.#moment;
+    const time = this.#head.time(this.#now);
+    const joints = isFresh(pose, time) ? pose.value.joints : null;
     if (joints !== this.#shownPose) stage.setPose(joints);
     this.#shownPose = joints;
-    const motion = joints !== null && isFresh(forecast, this.#now) ? forecast.value.positions : null;
+    const motion = joints !== null && isFresh(forecast, time) ? forecast.value.positions : null;
     if (motion !== this.#shownForecast) stage.setForecast(motion);
     this.#shownForecast = motion;
     stage.step(dtMs);
@@ -224,7 +255,9 @@ export class App {
     const store = this.#store;
     const now = this.#now;
     const { status } = this.#connection;
-    const decision = decisionNow(store, now);
+    const moment = this.#moment;
+    const time = this.#head.time(now);
+    const decision = decisionNow(moment, time);
     const body = decision?.decision ?? null;
     const rate = this.#sensor === "live" ? store.poseRateHz : null;
     const latency = decision?.timing.total_ms ?? null;
@@ -232,12 +265,13 @@ export class App {
     this.#gestures.render(store.welcome?.labels ?? [], store.welcome?.decide.enter ?? null, body);
     this.#affect.render(
       store.welcome?.gate ?? null,
-      affectNow(store, now),
-      store.affect,
+      affectNow(moment, time),
+      moment.affect,
       body?.gate ?? null,
-      now,
+      time,
     );
     this.#room.render(store.scene?.value ?? null, store.running, store.changedAt, now);
+    this.#timeline.render(this.#history, this.#head, now);
     this.#log.render(store.log.rows);
     this.#counters.render(store.stats, store.welcome);
     this.#notice.render(this.#problem, browserHost.now());

@@ -211,6 +211,7 @@ export function decision(index: number, change: Partial<DecisionBody> = {}): Dec
       end_ns: index * 2e8 + 96e7,
       body_id: 7,
       models: { predictor: "0123456789ab" },
+      futures: null,
       quality: { measured: 1, filled: 0, bone_deviation: 0.02, warnings: [] },
       forecast: "predictor",
       forecast_failure: null,

@@ -38,9 +38,12 @@ test("the page's address says the session, the token and the server's paths", ()
     session: "lab 1",
     token: "a+b",
     isStepped: true,
+    serverUrl: "https://host/some/prefix/",
     monitorUrl: "wss://host/some/prefix/v1/sessions/lab%201/monitor",
     sensorUrl: "wss://host/some/prefix/v1/sessions/lab%201/sensor",
+    sessionUrl: "https://host/some/prefix/v1/sessions/lab%201/",
     directoryUrl: "https://host/some/prefix/v1/sessions",
+    standInUrl: "https://host/some/prefix/v1/stand-in",
     modelsUrl: "https://host/some/prefix/v1/models/",
     sendsPictures: false,
   });

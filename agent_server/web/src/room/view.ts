@@ -1,4 +1,4 @@
-/** The room on a canvas: scenery, light and the agent, stepped from outside. */
+/** The room on a canvas: scenery, light and the agent, stepped and drawn from outside. */
 
 import {
   Mesh,
@@ -111,9 +111,12 @@ export class RoomView {
     for (let i = 0; i < 60; i++) agent.step(1000 / 60);
     this.#scene.add(root);
     this.#agent = agent;
-    // The first picture would stop the page for as long as a slow machine needs for its shaders.
+  }
+
+  /** Draw the first picture, which would stop the page for as long as its shaders take. */
+  async prepare(): Promise<void> {
     await this.#renderer.compileAsync(this.#scene, this.#camera);
-    this.step(0);
+    this.draw();
   }
 
   get isPeopled(): boolean {
@@ -156,14 +159,17 @@ export class RoomView {
     this.#scenery.setVolumeSound(isOn);
   }
 
-  /** Let time pass and draw. */
+  /** Let time pass. */
   step(dtMs: number): void {
     this.#agent?.step(dtMs);
     this.#scenery.step(dtMs);
-    this.#scene.environmentIntensity = this.#scenery.environmentIntensity;
-    if (this.#agent !== null) this.#scenery.moveShadows();
     this.#swayBy(dtMs / 1000);
     if (this.#adapts) this.#adapt(dtMs);
+  }
+
+  draw(): void {
+    this.#scene.environmentIntensity = this.#scenery.environmentIntensity;
+    if (this.#agent !== null) this.#scenery.moveShadows();
     this.#renderer.render(this.#scene, this.#camera);
     this.pictures += 1;
   }

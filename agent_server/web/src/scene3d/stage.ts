@@ -103,7 +103,7 @@ export class Stage {
     this.#orbit.reset();
   }
 
-  /** Let time pass, and draw if that changed anything. */
+  /** Let time pass. */
   step(dtMs: number): void {
     const { points } = this.#figure.follower;
     const moved = [
@@ -111,7 +111,12 @@ export class Stage {
       this.#ghost.step(dtMs, points),
       this.#orbit.step(dtMs),
     ];
-    if (!this.#isDirty && !moved.includes(true)) return;
+    this.#isDirty ||= moved.includes(true);
+  }
+
+  /** Draw if anything has changed. */
+  draw(): void {
+    if (!this.#isDirty) return;
     this.#isDirty = false;
     this.pictures += 1;
     this.#renderer.render(this.#scene, this.#camera);

@@ -25,11 +25,20 @@ export interface Timed<T> {
   readonly at: number;
 }
 
+/** What is known of the person at one instant. */
+export interface Moment {
+  readonly pose: Timed<PoseMessage> | null;
+  readonly forecast: Timed<ForecastMessage> | null;
+  /** Recent affect, oldest first; the last entry is the present one. */
+  readonly affect: readonly Timed<AffectTelemetry>[];
+  readonly decision: Timed<DecisionMessage> | null;
+}
+
 const TRAIL_MS = 4_000;
 const RATE_SPAN_NS = 2e9;
 const ERRORS_KEPT = 5;
 
-export class Store {
+export class Store implements Moment {
   welcome: Welcome | null = null;
   scene: Timed<SceneState> | null = null;
   pose: Timed<PoseMessage> | null = null;

@@ -4,7 +4,7 @@ import type { Directory } from "../net/directory.ts";
 import type { Fault, Status } from "../net/status.ts";
 import type { Place } from "../place.ts";
 import type { DecisionMessage } from "../protocol/messages.ts";
-import type { Store, Timed } from "./store.ts";
+import type { Moment, Store, Timed } from "./store.ts";
 
 /** Telemetry of a kind that has not come for this long counts as gone. */
 export const STALE_MS = 1_500;
@@ -57,11 +57,11 @@ export function sensorState(
   return mine?.sensor === true ? "no_body" : "none";
 }
 
-export function affectNow(store: Store, now: number): Affect | null {
-  const latest = store.affect.at(-1) ?? null;
+export function affectNow(moment: Moment, now: number): Affect | null {
+  const latest = moment.affect.at(-1) ?? null;
   if (latest === null) return null;
   const { valence, arousal, originating_ns, valence_sd, arousal_sd, source } = latest.value;
-  const decision = store.decision?.value.decision;
+  const decision = moment.decision?.value.decision;
   const isRefused =
     decision !== undefined && decision.end_ns > originating_ns && decision.gate.valence === null;
   return {
@@ -74,8 +74,8 @@ export function affectNow(store: Store, now: number): Affect | null {
 }
 
 /** The decision that still speaks of the present, or null. */
-export function decisionNow(store: Store, now: number): DecisionMessage | null {
-  return isFresh(store.decision, now) ? store.decision.value : null;
+export function decisionNow({ decision }: Moment, now: number): DecisionMessage | null {
+  return isFresh(decision, now) ? decision.value : null;
 }
 
 /** @param hasCamera Whether this page is a sensor of the session itself. */
