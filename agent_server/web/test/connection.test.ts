@@ -212,14 +212,14 @@ test("never means: stopped, with the reason, until somebody starts it again", ()
   assert.equal(connection.status.fault, null);
 });
 
-test("a refusal says what the server said, and comes back when the code says so", () => {
+test("a server that cuts the connection says why, and one comes back when the code says so", () => {
   connection.start();
   host.socket.events.onOpen();
   host.socket.say({ type: "error", code: "stopping", message: "it is stopping", fatal: true });
   host.socket.events.onClose(1001, "");
   const { fault, retryAt } = connection.status;
   const closeCode = 1001;
-  assert.deepEqual(fault, { kind: "refused", closeCode, code: "stopping", message: "it is stopping" });
+  assert.deepEqual(fault, { kind: "lost", closeCode, reason: "it is stopping" });
   assert.equal((retryAt ?? 0) - host.time, 125);
 });
 

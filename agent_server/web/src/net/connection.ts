@@ -239,7 +239,9 @@ export class Connection {
   #closed(closeCode: number, reason: string): void {
     const wasOpen = this.status.phase === "live" || this.status.phase === "greeting";
     const retry = CLOSE_CODES[closeCode]?.retry ?? "soon";
-    this.#fail(faultOf(closeCode, reason, wasOpen, this.#fatal), retry);
+    // A server that says why it cuts a connection, and lets come back at once, refuses nobody.
+    const fatal = retry === "soon" ? null : this.#fatal;
+    this.#fail(faultOf(closeCode, this.#fatal?.message ?? reason, wasOpen, fatal), retry);
   }
 
   #fail(fault: Fault, retry: Retry): void {
