@@ -21,11 +21,18 @@ from models.evaluation.figures.futures import (
 from models.evaluation.futures_losses import losses_report
 from models.evaluation.gestures import Classify, Predict
 from models.evaluation.page import plot_section, write_page
-from models.evaluation.sampled import GOOD, Draw, drawn_figures
-from models.evaluation.several import several_report
+from models.evaluation.sampled import GOOD, Draw, drawn_figures, trained_sampler
+from models.evaluation.several import live_takes, real_gestures, several_report
+from models.hp_gan.sampler import Sampler
 from models.hp_gan.train import load_hp_gan
+from models.ma_wgan.config import CONFIGS
+from models.ma_wgan.network import Predictor
+from models.ma_wgan.train import load_predictor
+from models.ma_wgan.train import train as train_ma_wgan
+from models.training.run import INFO, Run
 
 STRIDE = 50
+MA_WGAN = CONFIGS["server_noise"]
 DRAWS = 4
 
 
@@ -44,8 +51,8 @@ def futures_report(
         classify: motion (B, 75, 9, 3) -> probabilities (B, C).
         predict: seen (B, 25, 9, 3) -> the forecast (B, 50, 9, 3).
         draw: The sampler that is measured.
-        runs: Folder of HP-GAN's runs: ``hp_gan``, and those of the losses, which are trained
-            where they are missing.
+        runs: Folder of HP-GAN's run ``hp_gan``, of those of its losses and of the manifold-aware
+            GAN that stands beside it, which are trained where they are missing.
         data: Folder that holds the set folders.
         cache: Folder of generated recordings.
         report: Folder for a page, or None.
@@ -61,7 +68,10 @@ def futures_report(
         }
     losses = losses_report(runs, held, data, cache)
     features = features_report(critic, generator.config, data)
-    several = several_report(classify, predict, draw, takes, data)
+    lived, gestures = live_takes(takes), real_gestures(data)
+    other = trained_sampler(
+        Sampler(_ma_wgan(runs / "ma_wgan", data, cache), MA_WGAN.network.noise, judge).eval()
+    )
     found = {
         "sampler": {
             name: {
@@ -72,7 +82,14 @@ def futures_report(
         },
         "losses": losses,
         "features": features,
-        **several,
+        **several_report(classify, predict, draw, lived, gestures),
+        "ma_wgan": {
+            "sampler": {
+                name: drawn_figures(other(seen, DRAWS), seen, true)
+                for name, (seen, true) in held.items()
+            },
+            **several_report(classify, predict, other, lived, gestures),
+        },
     }
     if report is not None:
         plots = [
@@ -96,6 +113,14 @@ def futures_report(
             body="".join(map(plot_section, plots)),
         )
     return found
+
+
+def _ma_wgan(place: Path, data: Path, cache: Path) -> Predictor:
+    """The manifold-aware GAN with noise of its own, trained unless its run is there."""
+    if not (place / INFO).exists():
+        command = "python -m models train ma_wgan --config server_noise --data DIR --out RUN"
+        train_ma_wgan(MA_WGAN, Run(place, MA_WGAN, 0, command, resume=False), data, cache)
+    return load_predictor(place)
 
 
 def _held(recordings: Sequence[Recording]) -> tuple[Float32, Float32]:

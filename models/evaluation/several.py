@@ -23,8 +23,38 @@ from models.evaluation.sim2real import msrc12_windows
 
 COUNTS = (1, 5, 10)
 """How many futures are compared."""
-EVERY = 2
-"""Every second of the test takes."""
+EVERY = 4
+"""Every fourth of the test takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """A recording as the server lives through it.
+
+    Attributes:
+        seen: Shape (N, 25, 9, 3), its windows, normalised.
+        last: Shape (N,), last frame of each.
+        frames: Length of the recording.
+        stretches: The gestures in it.
+    """
+
+    seen: Float32
+    last: NDArray[np.int64]
+    frames: int
+    stretches: tuple[Stretch, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Named:
+    """Windows of which it is known what they show.
+
+    Attributes:
+        seen: Shape (N, 25, 9, 3), normalised.
+        labels: Shape (N,), index in GESTURES.
+    """
+
+    seen: Float32
+    labels: NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,8 +125,8 @@ def several_report(
     classify: Classify,
     predict: Predict,
     draw: Draw,
-    recordings: Sequence[Recording],
-    data: Path,
+    takes: Sequence[Take],
+    real: Named,
 ) -> dict[str, Any]:
     """Accuracy, calibration and times to a decision, for each number of futures.
 
@@ -104,37 +134,49 @@ def several_report(
         classify: motion (B, 75, 9, 3) -> probabilities (B, C).
         predict: seen (B, 25, 9, 3) -> the forecast (B, 50, 9, 3).
         draw: Draws the others.
-        recordings: Takes of virtual people whom no model has seen.
-        data: Folder that holds ``msrc12/``, whose first seconds are named too.
+        takes: Of virtual people whom no model has seen.
+        real: The first seconds of real people's gestures.
     """
-    takes = [
-        (take, take.stretches, *sliding_seen(take.observed))
-        for take in recordings[::EVERY]
-        if take.stretches is not None and len(take.observed) >= SEEN_FRAMES
-    ]
-    found = [read_futures(classify, predict, draw, seen) for _, _, seen, _ in takes]
-    labels = np.concatenate([_judged(stretches, last) for _, stretches, _, last in takes])
+    found = [read_futures(classify, predict, draw, take.seen) for take in takes]
     virtual = _joined(found)
-    motion, asked = msrc12_windows(data)
-    real = read_futures(classify, predict, draw, motion[:, :SEEN_FRAMES])
-    real_labels = np.array([GESTURES.index(name) for name in asked])
+    labels = np.concatenate([_judged(take) for take in takes])
     report: dict[str, Any] = {
         "synthetic": _named(virtual, labels),
-        "msrc12": _named(real, real_labels),
+        "msrc12": _named(read_futures(classify, predict, draw, real.seen), real.labels),
         "decisions": {},
     }
     for name in virtual.rows():
         streams = [
-            LiveStream(each.rows()[name], last, len(take.observed), stretches)
-            for each, (take, stretches, _, last) in zip(found, takes, strict=True)
+            LiveStream(each.rows()[name], take.last, take.frames, take.stretches)
+            for each, take in zip(found, takes, strict=True)
         ]
         report["decisions"][name] = _decided(streams)
     return report
 
 
-def _judged(stretches: tuple[Stretch, ...], last: NDArray[np.int64]) -> NDArray[np.int64]:
+def live_takes(recordings: Sequence[Recording]) -> list[Take]:
+    """Every fourth of the recordings, as the server lives through it."""
+    return [
+        Take(*sliding_seen(each.observed), len(each.observed), each.stretches)
+        for each in recordings[::EVERY]
+        if each.stretches is not None and len(each.observed) >= SEEN_FRAMES
+    ]
+
+
+def real_gestures(data: Path) -> Named:
+    """The first second of each of MSRC-12's gestures that the server knows by another name.
+
+    Raises:
+        InvalidInput: If the set is not there.
+    """
+    motion, asked = msrc12_windows(data)
+    seen = np.ascontiguousarray(motion[:, :SEEN_FRAMES])
+    return Named(seen, np.array([GESTURES.index(name) for name in asked]))
+
+
+def _judged(take: Take) -> NDArray[np.int64]:
     """Labels of the windows whose seen second and whole say the same, else AMBIGUOUS."""
-    seen, whole = (of(stretches, GESTURES, last) for of in (window_labels, whole_labels))
+    seen, whole = (of(take.stretches, GESTURES, take.last) for of in (window_labels, whole_labels))
     return np.where(seen == whole, seen, AMBIGUOUS)
 
 

@@ -76,8 +76,8 @@ class TrainConfig:
     """
 
     network: NetworkConfig = NetworkConfig()
-    steps: int = 1_400
-    batch: int = 32
+    steps: int = 800
+    batch: int = 24
     learning_rate: float = 5e-4
     critic_rate: float = 1e-3
     critic_steps: int = 2
@@ -91,7 +91,7 @@ class TrainConfig:
     penalty: float = 10.0
     ema: float = 0.998
     validate_every: int = 100
-    judged_from: int = 500
+    judged_from: int = 400
     synthetic_sequences: int = 2_000
 
     def __post_init__(self) -> None:

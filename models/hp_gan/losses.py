@@ -27,10 +27,10 @@ def diversity(
     true: torch.Tensor,
     last: torch.Tensor,
 ) -> torch.Tensor:
-    """1 where two futures of one past are alike, towards 0 the farther apart they are.
+    """1 where two futures of one past are alike, 0 where they are as far apart as wanted.
 
-    They are wanted as far apart as the body goes in truth, so that a body at rest need not be
-    thrown about. Futures whose random vectors are close may be close too.
+    They are wanted as far apart as the body goes in truth, and no farther, so that a body at rest
+    need not be thrown about. Futures whose random vectors are close may be close too.
 
     Args:
         futures: Two of shape (B, F, J, 3), metres.
@@ -41,7 +41,7 @@ def diversity(
     apart = _distance(futures[0], futures[1])
     away = (draws[0] - draws[1]).norm(dim=1) / (2 * draws[0].shape[1]) ** 0.5  # 1 on average
     wanted = away * (_distance(true, last[:, None]) + LEAST_APART_M)
-    return torch.exp(-apart / wanted).mean()
+    return torch.relu(1 - apart / wanted).mean()
 
 
 def _distance(one: torch.Tensor, other: torch.Tensor) -> torch.Tensor:

@@ -182,6 +182,9 @@ PAPER = TrainConfig(
 
 CONFIGS: dict[str, TrainConfig] = {
     "server": SERVER,
+    "server_noise": replace(
+        SERVER, network=replace(SERVER.network, noise=16), steps=600, batch=64, validate_every=200
+    ),
     "best": BEST,
     "best_plain": replace(
         BEST,

@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from agent_server.domain.motion import SEEN_FRAMES
+from agent_server.domain.motion import PREDICTED_FRAMES, SEEN_FRAMES
 from agent_server.domain.skeleton import CoreJoint
+from agent_server.errors import InferenceError
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
 from agent_server.service.models import Models
 
@@ -14,6 +15,26 @@ def covers_ears(motion):
     neck = last[CoreJoint.NECK, 1]
     wrists = last[[CoreJoint.LEFT_WRIST, CoreJoint.RIGHT_WRIST], 1]
     return "loud" if (wrists > neck).all() else "idle"
+
+
+class RisingSampler:
+    """Draw k, from 1, stays as it was last seen, k times 10 cm higher; qualities are as told."""
+
+    name = "rising_sampler"
+    sha256 = "4" * 64
+
+    def __init__(self, *quality, fails=False):
+        self.quality = np.array(quality, np.float32)
+        self.fails = fails
+        self.asked = []
+
+    def draw(self, seen, count):
+        if self.fails:
+            raise InferenceError("the sampler is broken")
+        self.asked.append(count)
+        drawn = np.repeat(seen[None, -1:], PREDICTED_FRAMES, axis=1).repeat(count, axis=0)
+        drawn[..., 1] += 0.1 * np.arange(1, count + 1, dtype=np.float32)[:, None, None]
+        return drawn, self.quality[:count]
 
 
 class CalmReader:

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from agent_server.domain.motion import Forecast, Quality, Window
-from agent_server.errors import InferenceError
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
 from agent_server.service.models import Drawing, Models
 from agent_server.service.worker import infer
 from agent_server.stages.classify import classify
 from agent_server.stages.futures import draw_futures
 from agent_server.stages.predict import LAST_FRAME, hold_last, predict
+from tests.support.models import RisingSampler
 
 
 def window(index=0, height=1.0):
@@ -19,33 +19,13 @@ def window(index=0, height=1.0):
     return Window(index, 0, 0, 1, positions, np.ones((25, 9), np.float32), Quality(1, 0, 0))
 
 
-class Rising:
-    """Draw k rises by k times 10 cm; the qualities are as told."""
-
-    name = "rising"
-    sha256 = "4" * 64
-
-    def __init__(self, *quality, fails=False):
-        self.quality = np.array(quality, np.float32)
-        self.fails = fails
-        self.asked = []
-
-    def draw(self, seen, count):
-        if self.fails:
-            raise InferenceError("the sampler is broken")
-        self.asked.append(count)
-        drawn = np.repeat(seen[None, -1:], 50, axis=1).repeat(count, axis=0)
-        drawn[..., 1] += 0.1 * np.arange(1, count + 1, dtype=np.float32)[:, None, None]
-        return drawn, self.quality[:count]
-
-
 def drawn_beside(sampler, count, seen):
     forecast = predict(LastFramePredictor(), [seen])
     return draw_futures(sampler, count, 0.5, [seen], forecast)[0]
 
 
 def test_the_forecast_stays_and_others_come_beside_it_in_the_camera_frame():
-    sampler, seen = Rising(0.9, 0.8, 0.7), window()
+    sampler, seen = RisingSampler(0.9, 0.8, 0.7), window()
     forecast = drawn_beside(sampler, 4, seen)
     assert sampler.asked == [3]
     np.testing.assert_array_equal(forecast.positions, np.repeat(seen.positions[-1:], 50, axis=0))
@@ -56,7 +36,7 @@ def test_the_forecast_stays_and_others_come_beside_it_in_the_camera_frame():
 
 
 def test_futures_of_low_quality_are_left_out_and_counted():
-    forecast = drawn_beside(Rising(0.9, 0.2, 0.5), 4, window())
+    forecast = drawn_beside(RisingSampler(0.9, 0.2, 0.5), 4, window())
     np.testing.assert_allclose(forecast.futures.quality, [0.9, 0.5])
     assert forecast.futures.drawn == 3
     spread = classify(RuleClassifier(lambda _: "idle"), [window()], [forecast])[0].spread
@@ -66,7 +46,7 @@ def test_futures_of_low_quality_are_left_out_and_counted():
 def test_where_all_are_left_out_the_forecast_decides_alone():
     seen, classifier = window(), RuleClassifier(lambda _: "idle")
     alone = classify(classifier, [seen], predict(LastFramePredictor(), [seen]))[0]
-    among = classify(classifier, [seen], [drawn_beside(Rising(0.1, 0.1), 3, seen)])[0]
+    among = classify(classifier, [seen], [drawn_beside(RisingSampler(0.1, 0.1), 3, seen)])[0]
     np.testing.assert_array_equal(among.probabilities, alone.probabilities)
     assert not among.spread.deviations.any()
 
@@ -76,7 +56,9 @@ def test_probabilities_are_the_mean_over_futures_and_their_spread_its_deviation(
         return "hello" if motion[-1, 2, 1] > 0.15 else "idle"  # the navel has risen
 
     classifier = RuleClassifier(rule)
-    found = classify(classifier, [window()], [drawn_beside(Rising(1.0, 1.0, 1.0), 4, window())])[0]
+    found = classify(
+        classifier, [window()], [drawn_beside(RisingSampler(1.0, 1.0, 1.0), 4, window())]
+    )[0]
     hello = found.labels.index("hello")
     # The forecast and the first draw say idle, the other two hello.
     assert found.probabilities[hello] == pytest.approx((2 * 0.01 + 2 * 0.94) / 4)
@@ -89,7 +71,7 @@ def test_windows_with_and_without_futures_keep_their_order_and_their_bits():
     windows = [window(index) for index in range(4)]
     forecasts = predict(LastFramePredictor(), windows)
     mixed = [
-        draw_futures(Rising(1.0), 2, 0.5, [seen], [forecast])[0] if index % 2 else forecast
+        draw_futures(RisingSampler(1.0), 2, 0.5, [seen], [forecast])[0] if index % 2 else forecast
         for index, (seen, forecast) in enumerate(zip(windows, forecasts, strict=True))
     ]
     together = classify(classifier, windows, mixed)
@@ -100,14 +82,14 @@ def test_windows_with_and_without_futures_keep_their_order_and_their_bits():
 
 
 def test_a_failed_forecast_stays_alone():
-    sampler, seen = Rising(1.0), window()
+    sampler, seen = RisingSampler(1.0), window()
     held = hold_last(seen, "no such pose")
     assert draw_futures(sampler, 5, 0.5, [seen], [held]) == [held]
     assert sampler.asked == []
 
 
 def test_a_sampler_that_fails_leaves_the_last_frame_and_says_why():
-    forecast = drawn_beside(Rising(fails=True), 5, window())
+    forecast = drawn_beside(RisingSampler(fails=True), 5, window())
     assert (forecast.source, forecast.failure) == (LAST_FRAME, "the sampler is broken")
     assert forecast.futures is None
 
@@ -115,9 +97,9 @@ def test_a_sampler_that_fails_leaves_the_last_frame_and_says_why():
 def test_the_worker_draws_only_where_it_is_told_to():
     predictor, classifier = LastFramePredictor(), RuleClassifier(lambda _: "idle")
     assert infer(Models(predictor, classifier), [window()])[0].classification.spread is None
-    models = Models(predictor, classifier, drawing=Drawing(Rising(1.0, 1.0), 3, 0.5))
+    models = Models(predictor, classifier, drawing=Drawing(RisingSampler(1.0, 1.0), 3, 0.5))
     assert infer(models, [window()])[0].classification.spread.futures == 3
-    assert models.hashes["rising"] == "4" * 12
+    assert models.hashes["rising_sampler"] == "4" * 12
 
 
 def test_forecasts_of_one_future_say_nothing_of_others():
