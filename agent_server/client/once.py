@@ -96,6 +96,8 @@ async def join(
             subprotocols=[Subprotocol(subprotocol)],
             compression=None,
             max_size=None,
+            # Who only sends need not read; pings are answered still, which a full queue prevents.
+            max_queue=None,
             # A client that has stopped reading would otherwise wait long for a farewell.
             close_timeout=1.0,
         )

@@ -31,6 +31,7 @@ MAX_COORDINATE_M = 50.0
 """No joint is farther from its sensor."""
 
 
+@np.errstate(over="ignore", invalid="ignore")  # such numbers are refused by the checks below
 def skeleton_from_message(
     message: m.Skeleton | m.PackedSkeleton, stamp_ns: int | None = None
 ) -> SkeletonFrame:

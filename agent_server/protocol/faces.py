@@ -40,6 +40,7 @@ def round_points(points: Float64) -> Float64:
     return rounded
 
 
+@np.errstate(over="ignore", invalid="ignore")  # such numbers are refused by the checks below
 def landmarks_from_message(
     message: m.FacePoints | m.PackedFacePoints, stamp_ns: int | None = None
 ) -> FaceLandmarks:
@@ -143,6 +144,7 @@ def pack_face(message: m.FacePoints) -> m.PackedFacePoints:
     )
 
 
+@np.errstate(over="ignore", invalid="ignore")  # such numbers are refused by the checks below
 def gaze_from_message(message: m.Gaze, stamp_ns: int | None = None) -> GazeSample:
     """Check a gaze ray and give it unit length.
 

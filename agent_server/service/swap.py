@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from agent_server.errors import BundleError, InvalidInput
+from agent_server.errors import BundleError
 from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
 from agent_server.service.hub import Hub
 from agent_server.service.models import Models
@@ -44,23 +44,18 @@ class Swapper:
             The hashes of all models in use, by name.
 
         Raises:
-            InvalidInput: If nobody may do so, or not from there.
-            BundleError: If the bundle is not good; all stays as it was.
+            BundleError: If the bundle is not good, or may not be taken from there; all stays as it
+                was.
         """
         if self._allowed is None:
-            raise InvalidInput(
+            raise BundleError(
                 "this server changes no models: name the folder from which it may take them, "
-                "folder in [models]",
-                field="path",
-                code="no_folder",
+                "folder in [models]"
             )
         folder = (self._allowed / path).resolve()
         if not folder.is_relative_to(self._allowed):
-            raise InvalidInput(
-                f"{path} lies outside the folder that models may be taken from: name a folder "
-                "within it",
-                field="path",
-                code="outside",
+            raise BundleError(
+                f"{path} lies outside the folder that models may be taken from: name one within it"
             )
         async with self._turn:
             await self._change({**self._folders, which: folder}, (which,))

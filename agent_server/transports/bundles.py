@@ -4,7 +4,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import FileResponse, JSONResponse, Response
 
 from agent_server import assets
-from agent_server.errors import BundleError, InvalidInput
+from agent_server.errors import BundleError
 from agent_server.inference.manifest import MANIFEST_FILE, MODEL_FILE
 from agent_server.service.swap import Swappable, Swapper
 from agent_server.transports.guard import require
@@ -39,7 +39,7 @@ def bundle_router(swapper: Swapper | None) -> APIRouter:
             return JSONResponse({"detail": "this server changes no models"}, 404)
         try:
             return JSONResponse({"models": await swapper.take(which, path)})
-        except (InvalidInput, BundleError) as error:
+        except BundleError as error:
             return JSONResponse({"detail": str(error)}, 422)
 
     return router

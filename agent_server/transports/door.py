@@ -24,6 +24,13 @@ _FULL = (
 )
 
 
+class _Quiet(logging.Filter):
+    """Leaves out what any client can make uvicorn log as an error of the server's."""
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        return not str(record.msg).startswith("Invalid UTF-8 sequence")
+
+
 class Door:
     """Counts connections.
 
@@ -66,6 +73,9 @@ class Door:
     def protocols(self) -> tuple[type[asyncio.Protocol], type[asyncio.Protocol]]:
         """What uvicorn is to speak HTTP and websockets with."""
         door = self
+        logger = logging.getLogger("uvicorn.error")
+        if not any(isinstance(one, _Quiet) for one in logger.filters):
+            logger.addFilter(_Quiet())
 
         class Http(_Http):
             """HTTP behind this door."""
