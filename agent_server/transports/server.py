@@ -219,6 +219,14 @@ class _Server(uvicorn.Server):
         super().__init__(config)
         self._hub = hub
 
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Let a stop that was asked for be no failure: the process goes on to its own end."""
+        with super().capture_signals():
+            yield
+            # uvicorn would raise them again now, and the process die of them.
+            self._captured_signals.clear()
+
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Stop in order: first the sessions, then the connections."""
         await self._hub.drain()
