@@ -15,12 +15,14 @@ from models.cli.options import (
     ARTIFACTS,
     CACHE,
     CLASSIFIER,
+    INTERACTION_RUNS,
     PREDICTOR,
     SAMPLER,
     AffectInputOption,
     CacheOption,
     ClassifierBundleOption,
     DataOption,
+    InteractionRunsOption,
     JsonOption,
     OutOption,
     PredictorBundleOption,
@@ -29,6 +31,7 @@ from models.cli.options import (
     model_of,
     show,
 )
+from models.data.interactions import INTERACTION_SETS, interaction_set
 from models.data.labelled_faces import is_training_set, read_faces, test_split
 from models.data.splits import synthetic_split
 from models.evaluation.ablations import ablation_report
@@ -38,8 +41,9 @@ from models.evaluation.affect_page import write_affect_page
 from models.evaluation.forecasters import bundled, forecaster
 from models.evaluation.futures_page import futures_report
 from models.evaluation.gesture_page import write_gesture_page
+from models.evaluation.interaction_rows import bundle_report, folds_report, rows_report
 from models.evaluation.landmarks import compare_with_mediapipe, on_one_core
-from models.evaluation.latency import bundle_latency
+from models.evaluation.latency import bundle_latency, reaction_bundle_latency
 from models.evaluation.msrc12_stream import msrc12_stream_report
 from models.evaluation.msrc12_windows import msrc12_report
 from models.evaluation.prediction import evaluate
@@ -222,6 +226,37 @@ def _shipped(
             return classifier_report(classify, predict, data, cache)
 
 
+@app.command("interaction")
+def evaluate_interaction(
+    data: DataOption,
+    model: Annotated[str, typer.Option("--model", help="Name of the bundles.")] = "interformer",
+    sets: Annotated[
+        list[str] | None, typer.Option("--set", help="sbu or k3hi; both if left out.")
+    ] = None,
+    benchmark: Annotated[
+        Literal["bundle", "rows", "folds"],
+        typer.Option(
+            "--benchmark",
+            help="bundle: the research bundles. rows: the paper's ablation S1 to S4, trained "
+            "where it has not been. folds: SBU's five folds of people, likewise.",
+        ),
+    ] = "bundle",
+    runs: InteractionRunsOption = INTERACTION_RUNS,
+    as_json: JsonOption = False,
+) -> None:
+    """Reactions by a judge of real ones: accuracy, spread and distance of their features."""
+    torch.set_num_threads(1)
+    chosen = [interaction_set(name) for name in sets or INTERACTION_SETS]
+    match benchmark:
+        case "bundle":
+            found = {spec.name: bundle_report(spec, data, runs, model) for spec in chosen}
+        case "rows":
+            found = {spec.name: rows_report(spec, data, runs) for spec in chosen}
+        case "folds":
+            found = {"sbu": folds_report(data, runs)}
+    show(found, as_json)
+
+
 def ablate(
     data: DataOption,
     out: OutOption,
@@ -237,6 +272,15 @@ def ablate(
     show(ablation_report(out, seed, data, cache), as_json)
 
 
-def latency(as_json: JsonOption = False) -> None:
-    """Time of both shipped models for one window, on one thread."""
-    show({path.name: bundle_latency(path) for path in (PREDICTOR, CLASSIFIER)}, as_json)
+def latency(
+    reaction: Annotated[
+        Path | None, typer.Option("--reaction", help="Bundle of a generator: time of a frame.")
+    ] = None,
+    as_json: JsonOption = False,
+) -> None:
+    """Time of both shipped models for one window, or of a generator for a frame; one thread."""
+    if reaction is not None:
+        torch.set_num_threads(1)
+        show({reaction.name: reaction_bundle_latency(reaction)}, as_json)
+    else:
+        show({path.name: bundle_latency(path) for path in (PREDICTOR, CLASSIFIER)}, as_json)

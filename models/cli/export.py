@@ -12,10 +12,12 @@ from models.cli.options import (
     ARTIFACTS,
     CACHE,
     CLASSIFIER,
+    INTERACTION_RUNS,
     PREDICTOR,
     SAMPLER,
     CacheOption,
     DataOption,
+    InteractionRunsOption,
     PredictorBundleOption,
     show,
 )
@@ -24,6 +26,7 @@ from models.export.classifier import export_classifier
 from models.export.face import export_faces
 from models.export.face_shapes import export_face_shapes
 from models.export.predictor import export_predictor
+from models.export.reaction import export_reaction
 from models.export.sampler import export_sampler
 
 FACE_SHAPES = Path(face.__file__).with_name(face.ASSET)
@@ -91,6 +94,19 @@ def export_interformer(
     torch.set_num_threads(1)
     manifest = export_classifier(run, predictor, out, version, data, cache)
     show(manifest.results, as_json=False)
+
+
+@app.command("reaction")
+def export_reaction_model(
+    data: DataOption,
+    run: RunOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    version: VersionOption = "0.1.0",
+    runs: InteractionRunsOption = INTERACTION_RUNS,
+) -> None:
+    """Export, check and measure a generator of reactions."""
+    torch.set_num_threads(1)
+    show(export_reaction(run, out, version, data, runs).results, as_json=False)
 
 
 @app.command("affect")

@@ -12,6 +12,7 @@ from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.affect.config import Source
 from models.hp_gan.config import TrainConfig as HpGanConfig
 from models.interformer.config import TrainConfig as InterformerConfig
+from models.interformer.generator.config import TrainConfig as GeneratorConfig
 from models.ma_wgan.config import TrainConfig as MaWganConfig
 from models.ops.session import OnnxModel
 from models.simlpe.config import TrainConfig as SimlpeConfig
@@ -31,12 +32,16 @@ PredictorBundleOption = Annotated[
     Path, typer.Option("--predictor", help="Bundle whose predictor completes the windows.")
 ]
 AffectInputOption = Annotated[Source, typer.Option("--input", help="What a face is given as.")]
+InteractionRunsOption = Annotated[
+    Path, typer.Option("--runs", help="Where judges and rows of benchmarks are kept.")
+]
 CACHE = Path("runs/cache")
+INTERACTION_RUNS = Path("runs/interaction")
 ARTIFACTS = Path(__file__).parents[1] / "artifacts"
 PREDICTOR = ARTIFACTS / "ma_wgan_server"
 SAMPLER = ARTIFACTS / "hp_gan_server"
 CLASSIFIER = ARTIFACTS / "interformer_server"
-C = TypeVar("C", MaWganConfig, SimlpeConfig, HpGanConfig, InterformerConfig)
+C = TypeVar("C", MaWganConfig, SimlpeConfig, HpGanConfig, InterformerConfig, GeneratorConfig)
 
 
 def model_of(bundle: Path) -> OnnxModel:

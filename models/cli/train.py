@@ -25,6 +25,8 @@ from models.evaluation.affect import affect_measures
 from models.hp_gan.config import CONFIGS as HP_GAN_CONFIGS
 from models.hp_gan.train import train as train_several
 from models.interformer.config import CONFIGS as INTERFORMER_CONFIGS
+from models.interformer.generator.config import CONFIGS as GENERATOR_CONFIGS
+from models.interformer.generator.train import train as train_generator
 from models.interformer.train import train as train_classifier
 from models.ma_wgan.config import CONFIGS as MA_WGAN_CONFIGS
 from models.ma_wgan.train import load_predictor
@@ -147,3 +149,18 @@ def train_interformer(
         ]
     )
     train_classifier(chosen, run, training, validation, load_predictor(predictor))
+
+
+@app.command("reaction")
+def train_reaction(
+    data: DataOption,
+    out: OutOption,
+    config: ConfigOption = "sbu",
+    seed: SeedOption = 0,
+    resume: ResumeOption = False,
+    steps: StepsOption = None,
+) -> None:
+    """Train a generator of reactions on SBU's or K3HI's training split."""
+    chosen = configured(GENERATOR_CONFIGS, config, steps)
+    run = Run(out, chosen, seed, _command("reaction", config, seed, steps), resume)
+    train_generator(chosen, run, data)

@@ -17,10 +17,11 @@ import numpy as np
 import torch
 
 from agent_server.domain.arrays import Float32
-from agent_server.errors import InvalidInput
+from agent_server.errors import ConfigError, InvalidInput
 from agent_server.skeleton.readers.mat5 import read_mat5
 from models.data.layouts import KINECT15
 
+LICENCE = "research only"
 Part = Literal["train", "test"]
 JOINTS = len(KINECT15.joints)
 TORSO = 2
@@ -172,6 +173,17 @@ K3HI = InteractionSet(
     _K3HI_LABELS,
 )
 INTERACTION_SETS = {one.name: one for one in (SBU, K3HI)}
+
+
+def interaction_set(name: str) -> InteractionSet:
+    """A set by its name.
+
+    Raises:
+        ConfigError: If there is none of this name.
+    """
+    if name not in INTERACTION_SETS:
+        raise ConfigError(f"set '{name}' is none of {', '.join(INTERACTION_SETS)}")
+    return INTERACTION_SETS[name]
 
 
 def held_out(

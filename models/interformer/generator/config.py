@@ -63,8 +63,9 @@ class TrainConfig:
         batch: Interactions an update.
         learning_rate: Peak rate (AdamW, warm-up, then a cosine to zero).
         weight_decay: Of all weights.
-        uses: Updates on a batch: the first is given true poses, each later one those that the one
-            before has made, in a random share of frames.
+        uses: Updates on a batch. In a random share of frames, all for half of the interactions,
+            the decoder is given what it made in the update before instead of the true pose; in
+            the first one, the pose in which the reaction begins.
         noise_m: Deviation of what a pose that is given is shifted by, metres.
         scale: Largest change of size.
         swap: Let the people change places where both do alike.
@@ -80,7 +81,7 @@ class TrainConfig:
     network: NetworkConfig = NetworkConfig()
     data: str = "sbu"
     steps: int = 400
-    batch: int = 16
+    batch: int = 12
     learning_rate: float = 3e-3
     weight_decay: float = 0.02
     uses: int = 3
@@ -89,9 +90,9 @@ class TrainConfig:
     swap: bool = True
     velocity: float = 1.0
     first: float = 1.0
-    bones: float = 0.5
-    stop: float = 0.02
-    divergence: float = 0.0005
+    bones: float = 1.0
+    stop: float = 0.004
+    divergence: float = 0.001
     ema: float = 0.98
     validate_every: int = 200
 

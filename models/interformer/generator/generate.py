@@ -94,7 +94,7 @@ class Step(nn.Module):
         """
         network = self.network
         reaction = pose[:, None]
-        x = network.write(reaction, reaction - before[:, None], timed=False)
+        x = network.write(first[:, None], reaction, reaction - before[:, None])
         x = x + network.write.times[at] + network.noise(noise)[:, None]
         near = nearness(reaction, action_pose[:, None]) if network.config.distance else None
         kept = []

@@ -24,8 +24,9 @@ from models.interformer.generator.attention import (
 )
 from models.interformer.generator.config import NetworkConfig
 
+WAY_SCALE = 4.0
 VELOCITY_SCALE = 8.0
-"""Brings metres a frame to about the size of metres."""
+"""Bring metres from the start, and metres a frame, to about unit size."""
 
 
 class Written(NamedTuple):
@@ -41,25 +42,30 @@ class Written(NamedTuple):
 
 
 class Embedding(nn.Module):
-    """Positions and steps -> tokens, a feature belongs to a coordinate of a joint."""
+    """Positions, ways from the first pose and steps -> tokens; a feature is a coordinate's own."""
 
     times: torch.Tensor
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
-        self.each = nn.Parameter(torch.randn(3, 2, config.features) * 0.7)
+        self.each = nn.Parameter(torch.randn(3, 3, config.features) * 0.7)
         self.widen = nn.Linear(config.width, config.width)
         self.register_buffer("times", _times(config.frames + 1, config.width), persistent=False)
 
     def forward(
-        self, motion: torch.Tensor, steps: torch.Tensor, timed: bool = True
+        self, first: torch.Tensor, motion: torch.Tensor, steps: torch.Tensor
     ) -> torch.Tensor:
-        """(B, T, J, 3) twice -> (B, T, D), with the times of the first frames or without any."""
-        both = torch.stack([motion, steps * VELOCITY_SCALE], dim=-1)
-        heads = both.transpose(2, 3) @ self.each  # (B, T, 3, J, F)
-        x: torch.Tensor = heads.flatten(2)
-        x = x + self.widen(x)
-        return x + self.times[: motion.shape[1]] if timed else x
+        """First poses (B, 1, J, 3), poses and steps (B, T, J, 3) -> (B, T, D), without times."""
+        way = (motion - first) * WAY_SCALE
+        seen = torch.stack([motion, way, steps * VELOCITY_SCALE], dim=-1)
+        x: torch.Tensor = (seen.transpose(2, 3) @ self.each).flatten(2)  # (B, T, 3 * J * F)
+        widened: torch.Tensor = x + self.widen(x)
+        return widened
+
+    def timed(self, motion: torch.Tensor) -> torch.Tensor:
+        """(B, T, J, 3) -> (B, T, D), with the times of the first frames."""
+        x: torch.Tensor = self(motion[:, :1], motion, steps_of(motion))
+        return x + self.times[: motion.shape[1]]
 
 
 class Dense(nn.Sequential):
@@ -190,7 +196,7 @@ class Generator(nn.Module):
     def encode(self, action: torch.Tensor, lengths: torch.Tensor) -> Memory:
         """Read actions (B, S, J, 3) of ``lengths`` (B,) frames."""
         frames = torch.arange(action.shape[1], device=action.device)
-        x = self.read(action, steps_of(action))
+        x = self.read.timed(action)
         last = (frames == lengths[:, None] - 1)[..., None]
         x = x + last * self.ending
         bias = torch.where(frames < lengths[:, None], 0.0, NEVER)[:, None, None]
@@ -209,7 +215,7 @@ class Generator(nn.Module):
             memory: The actions.
         """
         frames = reaction.shape[1]
-        x = self.write(reaction, steps_of(reaction)) + self.noise(noise)[:, None]
+        x = self.write.timed(reaction) + self.noise(noise)[:, None]
         later = torch.ones(frames, frames, device=x.device).triu(1) * NEVER
         beside = memory.tokens[:, :frames]
         near = nearness(reaction, memory.action[:, :frames]) if self.config.distance else None
@@ -237,4 +243,4 @@ def _times(frames: int, width: int) -> torch.Tensor:
     waves = torch.zeros(frames, width)
     waves[:, 0::2] = torch.sin(at * rates)
     waves[:, 1::2] = torch.cos(at * rates)[:, : width // 2]
-    return waves
+    return 0.5 * waves

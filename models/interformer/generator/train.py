@@ -78,7 +78,8 @@ class Learner(nn.Module):
         if self.batch is None or self.used == config.uses:
             drawn = self.training_pairs.draw(config.batch, generator)
             self.batch = vary(drawn, generator, config.scale, self.swap).to(self.device)
-            self.made, self.used = self.batch.reaction, 0
+            first = self.batch.reaction[:, :1]
+            self.made, self.used = first.expand_as(self.batch.reaction), 0
         self.used += 1
         pairs, reaction = self.batch, self.batch.reaction
         self.model.train()
@@ -98,10 +99,13 @@ class Learner(nn.Module):
         return {name: float(value.detach()) for name, value in terms.items()}
 
     def _given(self, reaction: torch.Tensor, generator: torch.Generator) -> torch.Tensor:
-        """What the decoder is given: true poses, those it made before, and all a little off."""
+        """What the decoder is given: true poses, those it made before, and all a little off.
+
+        Were it given true poses alone, it would learn to repeat them, and stand still by itself.
+        """
         size, frames = reaction.shape[:2]
         own = torch.rand(size, frames, generator=generator)
-        own = own < 1.5 * torch.rand(size, 1, generator=generator)
+        own = own < 2 * torch.rand(size, 1, generator=generator)
         given = torch.where(own.to(reaction.device)[:, :, None, None], self.made, reaction)
         off = torch.randn(size, frames, 1, 3, generator=generator)
         off = off + torch.randn(reaction.shape, generator=generator)
@@ -132,29 +136,26 @@ class Learner(nn.Module):
 
 
 def reaction_terms(written: Written, pairs: Pairs) -> dict[str, torch.Tensor]:
-    """The losses of a batch, in metres but for the last, which is of the end."""
+    """The losses of a batch.
+
+    Squares, as in the paper: with distances, whose best guess is a median, nobody moves at first.
+    """
     reaction, mask = pairs.reaction, pairs.mask
     pose, true, later = written.pose[:, :-1], reaction[:, 1:], mask[:, 1:].float()
-    whole = torch.cat([reaction[:, :1], pose], dim=1)
+    steps = torch.cat([reaction[:, :1], pose], dim=1).diff(dim=1) - reaction.diff(dim=1)
 
     def mean(each: torch.Tensor) -> torch.Tensor:
-        return (each * later).sum() / later.sum()
+        return (each.mean(-1) * later).sum() / later.sum()
 
     ends = F.one_hot(pairs.lengths - 1, mask.shape[1]).float()
     stops = F.binary_cross_entropy_with_logits(written.stop, ends, reduction="none")
-    steps = distance(whole.diff(dim=1) - reaction.diff(dim=1))
     return {
-        "position": mean(distance(pose - true)),
-        "velocity": mean(steps),
-        "first": steps[:, 0].mean(),
-        "bones": mean((bone_lengths(pose) - bone_lengths(true)).abs().mean(-1)),
+        "position": mean((pose - true).square().sum(-1)),
+        "velocity": mean(steps.square().sum(-1)),
+        "first": steps[:, 0].square().sum(-1).mean(),
+        "bones": mean((bone_lengths(pose) - bone_lengths(true)).square()),
         "stop": (stops * mask).sum() / len(mask),
     }
-
-
-def distance(apart: torch.Tensor) -> torch.Tensor:
-    """Mean over joints of lengths, (..., J, 3) -> (...), with a gradient at zero."""
-    return (apart.square().sum(-1) + 1e-6).sqrt().mean(-1)
 
 
 def bone_lengths(pose: torch.Tensor) -> torch.Tensor:
@@ -182,15 +183,19 @@ def react(
     config = network.config
     if noise is None:
         noise = torch.zeros(len(pairs), config.latent)
-    longest = min(config.frames, int(1.25 * int(pairs.lengths.max())) + 1)
     return generate(
         TorchCore(network.cpu()),
         pairs.action,
         pairs.lengths,
         pairs.reaction[:, :1],
         noise,
-        longest,
+        longest_of(pairs, config.frames),
     )
+
+
+def longest_of(pairs: Pairs, frames: int) -> int:
+    """Frames after which a reaction that does not end is cut: a quarter more than the action's."""
+    return min(frames, int(1.25 * int(pairs.lengths.max())) + 1)
 
 
 def train_on(
