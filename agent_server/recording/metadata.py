@@ -72,7 +72,9 @@ class RecordingMetadata:
         return {**strings, _CHECKSUM: _checksum(strings)}
 
     @classmethod
-    def from_strings(cls, strings: Mapping[str, str], path: Path) -> "RecordingMetadata":
+    def from_strings(
+        cls, strings: Mapping[str, str], path: Path, offset: int
+    ) -> "RecordingMetadata":
         """Read what :meth:`to_strings` gave; names that are not known are passed over.
 
         Raises:
@@ -82,15 +84,19 @@ class RecordingMetadata:
         version = strings.get("format_version", "")
         if not version.isdecimal() or not 1 <= int(version) <= FORMAT_VERSION:
             raise RecordingError(
-                f"{path} has format version {version or 'none'}, this server reads 1 to "
-                f"{FORMAT_VERSION}: use a newer server"
+                f"{path}, byte {offset}: format version {version or 'none'}, this server reads 1 "
+                f"to {FORMAT_VERSION}: use a newer server"
             )
         part, said = strings.get("part", "1"), strings.get(_CHECKSUM)
         if said not in (None, _checksum(strings)) or not part.isdecimal():
-            raise RecordingError(f"{path}: its metadata are corrupt, their checksum is wrong")
+            raise RecordingError(
+                f"{path}, byte {offset}: its metadata are corrupt, their checksum is wrong"
+            )
         missing = [name for name in ("session", "server_version") if name not in strings]
         if missing:
-            raise RecordingError(f"{path}: its metadata lack {' and '.join(missing)}")
+            raise RecordingError(
+                f"{path}, byte {offset}: its metadata lack {' and '.join(missing)}"
+            )
         return cls(
             **{name: strings[name] for name in _TEXTS if name in strings},
             bundles={

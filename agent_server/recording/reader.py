@@ -247,10 +247,13 @@ def open_recording(path: Path) -> Recording:
                         metadata = _metadata(file, path, index.offset, size)
     if metadata is None:
         raise RecordingError(
-            f"{path} is no recording of this server: it has no metadata {METADATA_NAME!r}"
+            f"{path} is no recording of this server: it has no metadata {METADATA_NAME!r} in its "
+            f"index, which ends at byte {size}"
         )
     if statistics is None or len(chunks) != statistics.chunk_count:
-        raise RecordingError(f"{path} has no index of its chunks; {RECOVER_HINT}")
+        raise RecordingError(
+            f"{path} has no index of its chunks before its end at byte {size}; {RECOVER_HINT}"
+        )
     chunks.sort(key=lambda chunk: chunk.chunk_start_offset)
     return Recording(
         path,
@@ -265,7 +268,7 @@ def _metadata(file: BinaryIO, path: Path, offset: int, size: int) -> RecordingMe
     raw = read_record(file, path, offset, size)
     if raw.opcode != Opcode.METADATA:
         raise DamagedError(path, offset, "the index names this as metadata, which it is not")
-    return RecordingMetadata.from_strings(raw.parse(Metadata.read).metadata, path)
+    return RecordingMetadata.from_strings(raw.parse(Metadata.read).metadata, path, offset)
 
 
 def _summary(statistics: Statistics, channels: Mapping[int, str], size: int) -> RecordingSummary:

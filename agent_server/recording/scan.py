@@ -34,6 +34,9 @@ _CHUNK = struct.Struct("<QQQII")  # first and last time, size, CRC, length of th
 _MESSAGE = struct.Struct("<HIQQ")  # channel, sequence, two times
 _LENGTH = struct.Struct("<Q")
 _FOOTER_SIZE = _PREFIX.size + 20
+_LENGTH_OF_NAME = 4
+_ZSTD = b"\x04\x00\x00\x00zstd"
+_SEARCH_BYTES = 1024 * 1024
 
 _PARSE_ERRORS = (
     McapError,
@@ -185,7 +188,7 @@ def open_file(path: Path) -> BinaryIO:
         raise RecordingError(f"{path} cannot be read: {error.strerror or error}") from error
     if magic != MAGIC:
         file.close()
-        raise RecordingError(f"{path} is no MCAP file: it begins with {magic!r}")
+        raise RecordingError(f"{path} is no MCAP file: at byte 0 it has {magic!r}")
     return file
 
 
@@ -203,6 +206,31 @@ def read_record(file: BinaryIO, path: Path, offset: int, end: int) -> RawRecord:
     if offset + _PREFIX.size + length > end:
         raise DamagedError(path, offset, "a record is longer than what is left of the file")
     return RawRecord(path, offset, opcode, file.read(length))
+
+
+def next_chunk(file: BinaryIO, start: int) -> int | None:
+    """Where the first compressed chunk from ``start`` on seems to begin; None if there is none.
+
+    It is told by the name of its compression, which stands at a fixed place within it. What it
+    holds is checked when it is read.
+    """
+    at, before = start, b""
+    while block := _read_at(file, at, _SEARCH_BYTES):
+        text = before + block
+        found = text.find(_ZSTD)
+        while found >= 0:
+            begin = at - len(before) + found - _PREFIX.size - _CHUNK.size + _LENGTH_OF_NAME
+            if begin >= start and _read_at(file, begin, 1) == bytes([Opcode.CHUNK]):
+                return begin
+            found = text.find(_ZSTD, found + 1)
+        at += len(block)
+        before = text[1 - len(_ZSTD) :]
+    return None
+
+
+def _read_at(file: BinaryIO, offset: int, count: int) -> bytes:
+    file.seek(offset)
+    return file.read(count)
 
 
 def read_records(file: BinaryIO, path: Path, start: int, end: int) -> Iterator[RawRecord]:
@@ -227,7 +255,8 @@ def read_summary(file: BinaryIO, path: Path, size: int) -> list[RawRecord]:
     file.seek(max(size - MAGIC_SIZE, 0))
     if size < 2 * MAGIC_SIZE + _FOOTER_SIZE or file.read(MAGIC_SIZE) != MAGIC:
         raise RecordingError(
-            f"{path} is truncated: it has no end, its writer was interrupted; {RECOVER_HINT}"
+            f"{path} is truncated at byte {size}: it has no end, its writer was interrupted; "
+            f"{RECOVER_HINT}"
         )
     footer_start = size - MAGIC_SIZE - _FOOTER_SIZE
     raw = read_record(file, path, footer_start, size - MAGIC_SIZE)

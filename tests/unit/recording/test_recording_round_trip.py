@@ -151,7 +151,7 @@ def test_metadata_keep_what_is_given_and_leave_out_the_rest() -> None:
     assert strings == {"format_version": "1", "session": "s", "server_version": "0"}
     full = RecordingMetadata("s", "1.2", bundles={"b": "2", "a": "1"}, created="2025-01-01")
     assert full.to_strings()["bundle.a"] == "1"
-    assert RecordingMetadata.from_strings(full.to_strings(), Path("x")) == full
+    assert RecordingMetadata.from_strings(full.to_strings(), Path("x"), 0) == full
 
 
 def test_a_topic_is_read_alone(write: Callable[[str], Path]) -> None:
