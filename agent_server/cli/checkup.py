@@ -4,10 +4,12 @@ import os
 import shutil
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
+from functools import partial
 from pathlib import Path
+from typing import Literal
 
 from agent_server import assets
 from agent_server.clock import SystemClock
@@ -15,6 +17,7 @@ from agent_server.config import Settings
 from agent_server.errors import AgentServerError
 from agent_server.transports.server import address, bind, load_models, load_room
 
+Check = Literal["models", "port", "clock", "disk", "page", "files"]
 LEAST_FREE_MB = 200
 """A recording takes some 60 MB an hour, and a full disk ends it."""
 CLIENTS_OF_A_SESSION = 3
@@ -35,7 +38,7 @@ class Finding:
         remedy: What to do about it; empty where nothing is to be done.
     """
 
-    check: str
+    check: Check
     is_good: bool
     found: str
     remedy: str = ""
@@ -45,23 +48,26 @@ class Finding:
         return asdict(self)
 
 
-def check_up(settings: Settings, folders: tuple[Path, ...]) -> Iterator[Finding]:
+def check_up(settings: Settings, folders: tuple[Path, ...], only: Sequence[Check]) -> list[Finding]:
     """Look at everything, one after the other.
 
     Args:
         settings: How the server would be started.
         folders: Where it would write.
+        only: What alone to look at; empty for everything.
     """
-    yield _guarded("models", lambda: _models(settings))
-    yield _guarded("port", lambda: _port(settings))
-    yield _clock()
-    for folder in folders:
-        yield _disk(folder)
-    yield _page()
-    yield _files(settings)
+    checks: list[tuple[Check, Callable[[], Finding]]] = [
+        ("models", lambda: _guarded("models", lambda: _models(settings))),
+        ("port", lambda: _guarded("port", lambda: _port(settings))),
+        ("clock", _clock),
+        *(("disk", partial(_disk, folder)) for folder in folders),
+        ("page", _page),
+        ("files", lambda: _files(settings)),
+    ]
+    return [look() for name, look in checks if not only or name in only]
 
 
-def _guarded(check: str, look: Callable[[], str]) -> Finding:
+def _guarded(check: Check, look: Callable[[], str]) -> Finding:
     """A check whose own error says what is wrong and what to do."""
     try:
         return Finding(check, True, look())

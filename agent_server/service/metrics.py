@@ -5,6 +5,7 @@ else is counted by the sessions anyway and only read when somebody asks.
 """
 
 from collections import Counter as Tally
+from collections import deque
 from collections.abc import Iterator, Mapping
 from typing import get_args
 
@@ -28,6 +29,8 @@ SECONDS = (
     *(0.03, 0.05, 0.08, 0.12, 0.2, 0.5, 1.0),
 )
 """Upper bounds of the histograms' buckets; 8, 20 and 50 ms are what is promised of commands."""
+LAGS = 100
+"""Measurements of the event loop's lag that are kept, ten seconds of them."""
 STAGES = ("wait", "predict", "classify", "decide", "affect")
 RECEIVED = {
     "frame": "frames",
@@ -83,6 +86,7 @@ class Metrics(Watcher):
             buckets=SECONDS,
             registry=registry,
         )
+        self._lags: deque[float] = deque(maxlen=LAGS)
         outcomes = Counter(
             "agent_server_decisions",
             "Decisions by what they came to.",
@@ -121,6 +125,17 @@ class Metrics(Watcher):
     def lagged(self, seconds: float) -> None:
         """Take how late the event loop was."""
         self._lag.observe(seconds)
+        self._lags.append(seconds)
+
+    @property
+    def worst_lag_s(self) -> float:
+        """How late the event loop was at worst in the last ten seconds."""
+        return max(self._lags, default=0.0)
+
+    def resident_mb(self) -> float | None:
+        """Resident memory of the process in MB; None where the system does not tell."""
+        memory = self._registry.get_sample_value("process_resident_memory_bytes")
+        return None if memory is None else memory / 2**20
 
     def closed(self, session: Session) -> None:
         """Keep what a session has counted, which is over."""

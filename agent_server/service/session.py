@@ -192,6 +192,10 @@ class Session:
             group.create_task(self._tick(), name=f"{self.id}: ticks")
             group.create_task(self._sensing.see(), name=f"{self.id}: images")
 
+    def silent_ns(self, now_ns: int) -> int:
+        """How long no sensor has sent anything; 0 before the first."""
+        return self._context.timeline.idle_ns(now_ns)
+
     def close(self, code: int, reason: str) -> None:
         """Send all clients away; the recording is the owner's to end."""
         for client in self.audience.clients:

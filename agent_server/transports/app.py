@@ -22,9 +22,10 @@ from agent_server.protocol.schema.json_schema import asyncapi
 from agent_server.service.auth import OPEN, Access, NotAdmitted
 from agent_server.service.hub import Hub
 from agent_server.service.swap import Swapper
-from agent_server.synthetic.stand_in import stand_in
+from agent_server.transports.admin import ADMIN_PATHS, admin_router
 from agent_server.transports.bundles import bundle_router
 from agent_server.transports.guard import Guard, admitted, refused, require
+from agent_server.transports.people import people_router
 from agent_server.transports.websocket import websocket_router
 
 _NO_PAGE = """<!doctype html><meta charset="utf-8"><title>agent-server</title>
@@ -104,7 +105,7 @@ def create_app(
     app = FastAPI(
         title="agent-server", version=__version__, lifespan=lifespan, docs_url=None, redoc_url=None
     )
-    open_paths = (*OPEN_PATHS, *_page_files(page))
+    open_paths = (*OPEN_PATHS, *ADMIN_PATHS, *_page_files(page))
     app.add_middleware(Guard, access=access, settings=hub.settings, open_paths=open_paths)
     if origins := hub.settings.access.origins:
         app.add_middleware(
@@ -115,6 +116,7 @@ def create_app(
         )
     app.add_exception_handler(NotAdmitted, _refuse)
     app.include_router(websocket_router(hub, access))
+    app.include_router(admin_router(hub))
 
     @app.get("/healthz")
     async def healthz() -> dict[str, str]:

@@ -75,3 +75,8 @@ def test_people_get_a_line_a_check():
     told = CliRunner().invoke(app, ["doctor", "--port", "0"]).stdout
     for check in ("models", "port", "clock", "disk", "page", "files"):
         assert check in told
+
+
+def test_one_check_can_be_asked_for():
+    _, found = doctor("--only", "files", "--only", "clock")
+    assert set(found) == {"files", "clock"}

@@ -105,7 +105,7 @@ async def test_figures_tell_what_happened():
         for stage in ("wait", "predict", "classify", "decide"):
             assert seen["agent_server_stage_seconds_count", stage] == made
         assert seen["agent_server_received_total", "frame"] == len(GESTURE)
-        assert seen[("agent_server_commands_total",)] == 1
+        assert seen[("agent_server_commands_total",)] >= 1
         assert seen["agent_server_clients", "renderer"] == 1
         assert seen[("agent_server_sessions",)] == 1
         assert seen[("agent_server_event_loop_lag_seconds_count",)] > 0
