@@ -7,9 +7,9 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from functools import partial
 from pathlib import Path
-from typing import Literal
 
 from agent_server import assets
 from agent_server.clock import SystemClock
@@ -17,7 +17,6 @@ from agent_server.config import Settings
 from agent_server.errors import AgentServerError
 from agent_server.transports.server import address, bind, load_models, load_room
 
-Check = Literal["models", "port", "clock", "disk", "page", "files"]
 LEAST_FREE_MB = 200
 """A recording takes some 60 MB an hour, and a full disk ends it."""
 CLIENTS_OF_A_SESSION = 3
@@ -25,6 +24,17 @@ NAPS = 20
 NAP_S = 0.01
 MOST_LATE_S = 0.02
 """A thread that wakes later than this leaves little of 50 ms for the work."""
+
+
+class Check(StrEnum):
+    """What is looked at."""
+
+    MODELS = "models"
+    PORT = "port"
+    CLOCK = "clock"
+    DISK = "disk"
+    PAGE = "page"
+    FILES = "files"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +67,12 @@ def check_up(settings: Settings, folders: tuple[Path, ...], only: Sequence[Check
         only: What alone to look at; empty for everything.
     """
     checks: list[tuple[Check, Callable[[], Finding]]] = [
-        ("models", lambda: _guarded("models", lambda: _models(settings))),
-        ("port", lambda: _guarded("port", lambda: _port(settings))),
-        ("clock", _clock),
-        *(("disk", partial(_disk, folder)) for folder in folders),
-        ("page", _page),
-        ("files", lambda: _files(settings)),
+        (Check.MODELS, lambda: _guarded(Check.MODELS, lambda: _models(settings))),
+        (Check.PORT, lambda: _guarded(Check.PORT, lambda: _port(settings))),
+        (Check.CLOCK, _clock),
+        *((Check.DISK, partial(_disk, folder)) for folder in folders),
+        (Check.PAGE, _page),
+        (Check.FILES, lambda: _files(settings)),
     ]
     return [look() for name, look in checks if not only or name in only]
 
@@ -97,7 +107,7 @@ def _clock() -> Finding:
         before_ns = clock.now_ns()
         if before_ns < last_ns:
             return Finding(
-                "clock",
+                Check.CLOCK,
                 False,
                 "the monotonic clock has gone back",
                 "use another clock source: see /sys/devices/system/clocksource",
@@ -109,15 +119,15 @@ def _clock() -> Finding:
         f"monotonic, {resolution_ns:.0f} ns fine; a thread wakes up to {late_s * 1000:.1f} ms late"
     )
     if late_s <= MOST_LATE_S:
-        return Finding("clock", True, found)
-    return Finding("clock", False, found, "the machine is too busy: give the server a core")
+        return Finding(Check.CLOCK, True, found)
+    return Finding(Check.CLOCK, False, found, "the machine is too busy: give the server a core")
 
 
 def _disk(folder: Path) -> Finding:
     nearest = next(one for one in (folder, *folder.absolute().parents) if one.exists())
     if not os.access(nearest, os.W_OK):
         return Finding(
-            "disk",
+            Check.DISK,
             False,
             f"{nearest} cannot be written",
             "mount a folder there that the server's user owns, or name another",
@@ -125,27 +135,34 @@ def _disk(folder: Path) -> Finding:
     free_mb = shutil.disk_usage(nearest).free // 2**20
     found = f"{folder}: {free_mb} MB are free"
     if free_mb >= LEAST_FREE_MB:
-        return Finding("disk", True, found)
-    return Finding("disk", False, found, f"free {LEAST_FREE_MB} MB or more, or name another folder")
+        return Finding(Check.DISK, True, found)
+    return Finding(
+        Check.DISK, False, found, f"free {LEAST_FREE_MB} MB or more, or name another folder"
+    )
 
 
 def _page() -> Finding:
     index = assets.page() / "index.html"
     if index.is_file():
-        return Finding("page", True, f"the browser page is in {index.parent}")
-    return Finding("page", False, f"there is no browser page in {index.parent}", "run `make page`")
+        return Finding(Check.PAGE, True, f"the browser page is in {index.parent}")
+    return Finding(
+        Check.PAGE, False, f"there is no browser page in {index.parent}", "run `make page`"
+    )
 
 
 def _files(settings: Settings) -> Finding:
     if sys.platform == "win32":
-        return Finding("files", True, "Windows has no limit that matters")
+        return Finding(Check.FILES, True, "Windows has no limit that matters")
     import resource  # noqa: PLC0415 - there is none on Windows
 
     limit = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     needed = settings.server.max_sessions * CLIENTS_OF_A_SESSION
     found = f"{limit} files and connections may be open, {needed} are needed for max_sessions"
     if limit == resource.RLIM_INFINITY or limit >= needed:
-        return Finding("files", True, found)
+        return Finding(Check.FILES, True, found)
     return Finding(
-        "files", False, found, f"say `ulimit -n {2 * needed}` before, or lower server.max_sessions"
+        Check.FILES,
+        False,
+        found,
+        f"say `ulimit -n {2 * needed}` before, or lower server.max_sessions",
     )
