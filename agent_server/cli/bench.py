@@ -7,6 +7,7 @@ import msgspec
 import typer
 from rich.console import Console
 
+from agent_server import assets
 from agent_server.bench.decision import measure_decisions
 from agent_server.bench.face import measure_faces
 from agent_server.bench.ingest import measure_ingest
@@ -23,6 +24,7 @@ from agent_server.bench.load import (
 )
 from agent_server.bench.load_plot import load_plot
 from agent_server.bench.reactions import measure_reactions, played, recorded
+from agent_server.bench.replay import measure_replay
 from agent_server.cli.options import FuturesOption, JsonOption, run, settings_with
 from agent_server.config import Settings
 from agent_server.transports.server import load_models, load_room
@@ -62,6 +64,23 @@ def face(
 ) -> None:
     """One image of a face, stage by stage, on one thread."""
     _show(measure_faces(image, rounds), as_json=as_json)
+
+
+@bench.command()
+def replay(
+    file: Annotated[
+        Path | None, typer.Argument(metavar="FILE", help="Recording; else the demo's.")
+    ] = None,
+    runs: Annotated[int, typer.Option(min=1, help="How often to replay it.")] = 5,
+    as_json: JsonOption = False,
+) -> None:
+    """Replay a recording with all models on one thread; each run must give the same bytes."""
+    models = load_models()
+    path = file or assets.demo_recording()
+    result = measure_replay(path, Settings(), models, load_room(Settings(), models), runs)
+    _show(result, as_json=as_json)
+    if result.identical != runs:
+        raise typer.Exit(1)
 
 
 @bench.command()

@@ -37,6 +37,8 @@ from agent_server.recording.reader import Recording, open_recording
 from agent_server.recording.records import SensorChanged
 from agent_server.recording.topics import CORE
 from agent_server.service.core import Core
+from agent_server.service.decision_log import changes, read_log
+from agent_server.service.recorder import settings_hash
 from agent_server.service.replay import replay as replay_recording
 from agent_server.transports.server import load_models, load_room
 
@@ -60,6 +62,13 @@ def replay(
             help="Send it to a running server instead; AGENT_SERVER_TOKEN holds its token.",
         ),
     ] = None,
+    expect: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="LOG",
+            help="Print only what differs from this log of replay --json; status 1 if anything.",
+        ),
+    ] = None,
     config: ConfigOption = None,
     classifier: ClassifierOption = None,
     predictor: PredictorOption = None,
@@ -79,8 +88,33 @@ def replay(
     settings = settings_with(
         config, predictor=predictor, classifier=classifier, futures=futures, rules=rules
     )
+    if expect is not None:
+        _compare(read_log(expect), list(_decide(recording, settings)), as_json=as_json)
+        return
     for decision in _paced(_decide(recording, settings), _factor(speed or "max")):
         show(decision)
+
+
+def _compare(
+    expected: list[m.DecisionBody], actual: list[m.DecisionBody], *, as_json: bool
+) -> None:
+    """Print what has changed; ends the command with status 1 if anything has."""
+    found = list(changes(expected, actual))
+    same_bytes = expected == actual
+    if as_json:
+        result = {"decisions": len(actual), "same_bytes": same_bytes, "changes": found}
+        print(msgspec.json.encode(result).decode())
+    else:
+        for change in found:
+            print(change)
+        rounding = "byte for byte" if same_bytes else "but for rounding"
+        print(
+            f"{len(actual)} decisions, {len(found)} changes"
+            if found
+            else f"{len(actual)} decisions, the same {rounding}"
+        )
+    if found:
+        raise typer.Exit(1)
 
 
 def _factor(speed: str) -> float:
@@ -103,6 +137,8 @@ def _decide(recording: Recording, settings: Settings) -> Iterator[m.DecisionBody
     for _, model in models.by_task:
         if recorded.get(model.name, model.sha256) != model.sha256:
             log.warning("recorded with another %s: decisions may differ", model.name)
+    if recording.metadata.config not in (None, settings_hash(settings)):
+        log.warning("recorded with other settings: decisions may differ")
     core = Core(recording.metadata.session, settings, load_room(settings, models), models)
     return map(decision_body, replay_recording(recording, core, models))
 

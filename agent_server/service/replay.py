@@ -5,6 +5,7 @@ is followed to the letter. A recording without it (made by the generator or conv
 data set) is dealt with as by a live session that is never late.
 """
 
+import logging
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from itertools import islice
@@ -22,7 +23,8 @@ from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import RecordingError
 from agent_server.protocol.convert import decision_body
-from agent_server.recording.reader import Recording
+from agent_server.recording.parts import later_parts
+from agent_server.recording.reader import Recording, open_recording
 from agent_server.recording.records import (
     BodyGone,
     CoreEntry,
@@ -41,6 +43,8 @@ from agent_server.service.worker import infer
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import hold_last
 
+log = logging.getLogger(__name__)
+
 LOOK_AHEAD = 512
 """Entries that are read at once: eight seconds of body and face."""
 BATCH = 32
@@ -54,15 +58,24 @@ def replay(recording: Recording, core: Core, models: Models) -> Iterator[Decisio
     (``batch_exact``); the decisions on them are made one by one.
 
     Args:
-        recording: What was recorded.
+        recording: What was recorded. After the first part of one that was written in parts come
+            the others, as far as they are there.
         core: A fresh core whose session id is the recording's.
         models: The models to decide with.
 
     Raises:
         RecordingError: If the recording cannot be read or contradicts itself.
     """
-    if CORE.name in recording.summary.topics:
-        return _Follower(recording, core, models).run(recording.entries())
+    is_whole = recording.metadata.part == 1
+    if CORE.name in recording.summary.topics and is_whole:
+        return _Follower(recording, core, models).run(_all_entries(recording))
+    if not is_whole:
+        log.warning(
+            "%s is part %d of a recording: what came before is not known, and every window is "
+            "decided on anew; replay the first part for the decisions as they were",
+            recording.path,
+            recording.metadata.part,
+        )
     core.set_face(recording.metadata.face or "expected")
     return replay_stream(core, models, recording.events())
 
@@ -70,6 +83,12 @@ def replay(recording: Recording, core: Core, models: Models) -> Iterator[Decisio
 def replay_stream(core: Core, models: Models, events: Iterable[RawInput]) -> Iterator[Decision]:
     """Every decision on a bare stream of inputs, in the order in which they were captured."""
     return _Punctual(core, models).run(events)
+
+
+def _all_entries(first: Recording) -> Iterator[RawInput | CoreEntry]:
+    yield from first.entries()
+    for path in later_parts(first.path):
+        yield from open_recording(path).entries()
 
 
 def log_line(decision: Decision) -> bytes:
