@@ -101,10 +101,17 @@ def faults(random, most_after_s=1.2):
 
 @dataclass(frozen=True, slots=True)
 class Delay:
-    """How late bytes pass: ``base_s``, and up to ``jitter_s`` more; the order is kept."""
+    """How late bytes pass: ``base_s``, and up to ``jitter_s`` more; the order is kept.
+
+    A share ``loss`` is lost and sent again: late by ``resend_s`` more, and so is all behind it.
+    """
 
     base_s: float = 0.0
     jitter_s: float = 0.0
+    loss: float = 0.0
+    resend_s: float = 0.2
 
     def draw(self, random):
-        return self.base_s + self.jitter_s * random.random()
+        late_s = self.base_s + self.jitter_s * random.random()
+        is_lost = self.loss > 0 and random.random() < self.loss
+        return late_s + (self.resend_s if is_lost else 0.0)

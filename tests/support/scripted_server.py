@@ -10,6 +10,7 @@ import argparse
 import asyncio
 import json
 import os
+import resource
 import signal
 import sys
 from contextlib import suppress
@@ -45,10 +46,11 @@ def settings(port, state):
     )
 
 
-async def serve(port, state, *, as_json):
+async def serve(port, state, *, as_json, record=None):
     """Serve until stopped by a signal."""
     chosen = settings(port, state)
-    hub = build_hub(chosen, Models(LastFramePredictor(), RuleClassifier(named)))
+    models = Models(LastFramePredictor(), RuleClassifier(named))
+    hub = build_hub(chosen, models, None if record is None else Path(record))
     listener = bind(chosen)
     async with serving(hub, listener) as stopped:
         line = {"event": "serving", "pid": os.getpid(), "address": address(listener)}
@@ -58,7 +60,14 @@ async def serve(port, state, *, as_json):
 
 def run(arguments):
     with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
-        runner.run(serve(arguments.port, arguments.state, as_json=arguments.json))
+        runner.run(
+            serve(
+                arguments.port,
+                arguments.state,
+                as_json=arguments.json,
+                record=arguments.record,
+            )
+        )
 
 
 def respawn(arguments):
@@ -81,9 +90,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--port", type=int, default=0)
     parser.add_argument("--state", help="folder in which sessions are remembered")
+    parser.add_argument("--record", help="folder in which sessions are recorded")
+    parser.add_argument("--largest-file", type=int, help="bytes beyond which no file can grow")
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--respawn", action="store_true", help="start anew with each line on stdin")
     arguments = parser.parse_args()
+    if arguments.largest_file is not None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (arguments.largest_file,) * 2)
     (respawn if arguments.respawn else run)(arguments)
 
 
