@@ -32,4 +32,9 @@ def checkout() -> Path | None:
 
 def demo_recording() -> Path:
     """The recording that the demo plays."""
-    return _choose("streams/demo.mcap", _CHECKOUT / "recorded_streams" / "demo.mcap")
+    return streams() / "demo.mcap"
+
+
+def streams() -> Path:
+    """Folder of the recordings that ship."""
+    return _choose("streams", _CHECKOUT / "recorded_streams")

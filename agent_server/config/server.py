@@ -38,6 +38,7 @@ class ServerSettings(Section, frozen=True):
         session_linger_s: A session without connections is kept this long.
         resume_s: A renderer whose connection broke keeps its place this long.
         state: Folder in which sessions are remembered over a restart; None keeps them in memory.
+        streams: Folder of recordings that the page may play; None means those that ship.
         tls_cert: File with the certificate chain (PEM) for ``https`` and ``wss``; None serves
             without TLS.
         tls_key: File with the certificate's private key (PEM).
@@ -63,6 +64,7 @@ class ServerSettings(Section, frozen=True):
     session_linger_s: float = 60.0
     resume_s: float = 10.0
     state: str | None = None
+    streams: str | None = None
     tls_cert: str | None = None
     tls_key: str | None = None
     max_clients: int = 32

@@ -1,12 +1,10 @@
 """The web application: websockets, health, sessions and the browser page."""
 
-import asyncio
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-import msgspec
 from fastapi import FastAPI, Request
 from fastapi.middleware.cors import CORSMiddleware
 from fastapi.responses import HTMLResponse, JSONResponse, Response
@@ -14,9 +12,8 @@ from fastapi.staticfiles import StaticFiles
 from prometheus_client.exposition import CONTENT_TYPE_LATEST
 from starlette.types import Scope
 
-from agent_server import __version__
+from agent_server import __version__, assets
 from agent_server.errors import InvalidInput
-from agent_server.protocol.convert import skeleton_to_message
 from agent_server.protocol.schema import reference
 from agent_server.protocol.schema.json_schema import asyncapi
 from agent_server.service.auth import OPEN, Access, NotAdmitted
@@ -182,22 +179,8 @@ def create_app(
             return JSONResponse({"detail": str(error)}, 422)
         return JSONResponse({"objects": session.delivery.scene().objects})
 
-    @app.get("/v1/stand-in")
-    async def stand_in_clip(gesture: str, seed: int = 0, take: int = 0) -> Response:
-        """What a made-up person does, for a page that plays without a sensor."""
-        try:
-            clip = await asyncio.to_thread(stand_in, gesture, abs(seed), abs(take))
-        except InvalidInput as error:
-            return JSONResponse({"detail": str(error)}, 422)
-        body = {
-            "gesture": clip.gesture,
-            "variant": clip.variant,
-            "onset_ns": clip.onset_ns,
-            "offset_ns": clip.offset_ns,
-            "frames": [skeleton_to_message(frame) for frame in clip.frames],
-        }
-        return Response(msgspec.json.encode(body), media_type="application/json")
-
+    streams = hub.settings.server.streams
+    app.include_router(people_router(assets.streams() if streams is None else Path(streams)))
     app.include_router(bundle_router(swapper))
 
     if (page / "index.html").exists():

@@ -18,8 +18,8 @@ from tests.support.live import live
 
 pytestmark = needs_browser
 STREAMS = Path(__file__).parents[2] / "recorded_streams"
-LEAD_NS = 4_000_000_000
-"""A recorded person is sent from this long before the gesture on: the neutral face comes first."""
+LEAD_NS = 3_000_000_000
+"""A recorded person is sent from this long before the gesture on."""
 STEP_MS = 50
 LONGEST_STEP_MS = 200
 PATIENCE_S = 120
@@ -49,11 +49,13 @@ async def playing(server, gesture, stream=None):
         recording = open_recording(STREAMS / f"{stream or gesture}.mcap")
         onset_ns = next(one.onset_ns for one in recording.labels() if one.gesture == gesture)
         begin_ns = max(0, onset_ns - LEAD_NS)
-        events = (event for event in recording.events() if event.stamp_ns >= begin_ns)
+        events = (event for event in recording.events() if event.originating_ns >= begin_ns)
         sending = asyncio.create_task(send_paced(sensor, events, 1.0))
         try:
             yield sending
         finally:
+            if sending.done():
+                sending.result()
             sending.cancel()
 
 
@@ -74,7 +76,8 @@ async def watch(page, is_over, *, moves=True):
 
 
 def is_at_a_command(state):
-    return state["room"]["playing"] is not None
+    """The return to work, when somebody has left, is none."""
+    return state["room"]["playing"] is not None and state["mode"] == "reacting"
 
 
 def is_settled(state):

@@ -17,6 +17,7 @@ import { Counters, StatusStrip } from "./panels/status.ts";
 import { TimelinePanel } from "./panels/timeline.ts";
 import type { Place } from "./place.ts";
 import { clipsOf } from "./play/clips.ts";
+import { Recorded, recordingsOf, type RecordedState } from "./play/recorded.ts";
 import { StandIn, type StandInState } from "./play/stand_in.ts";
 import { jsonCodec } from "./protocol/codec.ts";
 import { Actor } from "./room/actor.ts";
@@ -60,6 +61,7 @@ export class App {
   readonly #actLine = new ActLine(byId("act"));
   readonly #play = new PlayPanel(byId("play"));
   readonly #standIn: StandIn;
+  readonly #recorded: Recorded;
   readonly #client: Client;
   #roomPhase: RoomPhase = "loading";
   #roomView: RoomView | null = null;
@@ -94,11 +96,14 @@ export class App {
     this.#cameraPanel.connect(this.#camera);
     this.#cameraPanel.render(this.#camera, browserHost.now());
     const clips = clipsOf(place.standInUrl, STAND_IN_SEED, (...request) => fetch(...request));
-    this.#standIn = new StandIn(place, client, browserHost, clips, () =>
-      this.#play.render(this.#standIn.state),
-    );
-    this.#play.connect(this.#standIn);
-    this.#play.render(this.#standIn.state);
+    const recordings = recordingsOf(place.streamsUrl, (...request) => fetch(...request));
+    const renderPlay = (): void => this.#play.render(this.#standIn.state, this.#recorded.state);
+    this.#recorded = new Recorded(place, client, browserHost, recordings, renderPlay);
+    this.#standIn = new StandIn(place, client, browserHost, clips, renderPlay);
+    this.#play.connect(this.#standIn, this.#recorded);
+    renderPlay();
+    // Where there are none the made-up person is left.
+    void recordings.names().then((names) => this.#play.offer(names), () => {});
     this.#actLine.render(this.#roomPhase, null);
     this.#timeline = new TimelinePanel(byId("timeline"), {
       toggle: () => {
@@ -220,6 +225,11 @@ export class App {
   /** What the made-up person does. */
   standIn(): StandInState {
     return this.#standIn.state;
+  }
+
+  /** What the recorded person does. */
+  recorded(): RecordedState {
+    return this.#recorded.state;
   }
 
   get #sensor() {

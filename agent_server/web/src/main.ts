@@ -9,6 +9,7 @@ import "./styles/layout.css";
 
 import { App } from "./app.ts";
 import type { CameraState } from "./face/camera.ts";
+import type { RecordedState } from "./play/recorded.ts";
 import type { StandInState } from "./play/stand_in.ts";
 import { placeOf } from "./place.ts";
 import { Stage } from "./scene3d/stage.ts";
@@ -22,6 +23,7 @@ declare global {
       state(): Summary;
       camera(): CameraState;
       standIn(): StandInState;
+      recorded(): RecordedState;
       /** Let time pass, in steps as of a smooth picture, and draw at the end unless told not to. */
       step?(ms: number, draws?: boolean): void;
     };
@@ -86,6 +88,7 @@ if (place.isStepped) {
     state: () => app.summary(),
     camera: () => app.camera(),
     standIn: () => app.standIn(),
+    recorded: () => app.recorded(),
     step(ms, draws = true) {
       const end = now + ms;
       while (now < end) {
@@ -103,6 +106,7 @@ if (place.isStepped) {
     state: () => app.summary(),
     camera: () => app.camera(),
     standIn: () => app.standIn(),
+    recorded: () => app.recorded(),
   };
   const frame = (): void => {
     app.advance(performance.now());

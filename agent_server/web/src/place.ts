@@ -18,6 +18,8 @@ export interface Place {
   readonly sessionUrl: string;
   /** Where the made-up person's clips are. */
   readonly standInUrl: string;
+  /** Where the recordings are that the page may play. */
+  readonly streamsUrl: string;
   /** Folder of the networks that read a face. */
   readonly modelsUrl: string;
 }
@@ -40,6 +42,7 @@ export function placeOf(address: string): Place {
     sessionUrl: new URL(`v1/sessions/${encodeURIComponent(session)}/`, page).href,
     directoryUrl: new URL("v1/sessions", page).href,
     standInUrl: new URL("v1/stand-in", page).href,
+    streamsUrl: new URL("v1/streams", page).href,
     modelsUrl: new URL("v1/models/", page).href,
   };
 }

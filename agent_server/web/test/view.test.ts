@@ -44,6 +44,7 @@ test("the page's address says the session, the token and the server's paths", ()
     sessionUrl: "https://host/some/prefix/v1/sessions/lab%201/",
     directoryUrl: "https://host/some/prefix/v1/sessions",
     standInUrl: "https://host/some/prefix/v1/stand-in",
+    streamsUrl: "https://host/some/prefix/v1/streams",
     modelsUrl: "https://host/some/prefix/v1/models/",
     sendsPictures: false,
   });

@@ -1,5 +1,6 @@
 /** "Try it yourself": gestures of a made-up person, and the mood that its face shows. */
 
+import type { Recorded } from "../play/recorded.ts";
 import { CONTENT, NEUTRAL, UNCOMFORTABLE, type Mood, type StandIn } from "../play/stand_in.ts";
 import { sentenceCase } from "../state/words.ts";
 import { h, setAttribute, setState, setText } from "../ui/dom.ts";
@@ -20,6 +21,7 @@ export class PlayPanel {
   readonly #words = h("p", { class: "play-words", role: "status" });
   readonly #stop = h("button", { type: "button", class: "quiet-button" }, "Stop");
   readonly #instead = h("button", { type: "button", class: "quiet-button" }, "Play instead");
+  readonly #recordings = h("select", { class: "recordings", "aria-label": "Play a recording" });
 
   constructor(root: HTMLElement) {
     this.#root = root;
@@ -44,12 +46,27 @@ export class PlayPanel {
     moods.append(fine);
     const title = h("span", { class: "play-title" }, "Try it");
     gestures.prepend(title);
-    root.append(gestures, moods, h("div", { class: "play-side" }, this.#words, this.#instead, this.#stop));
+    this.#recordings.append(h("option", { value: "" }, "Play a recording\u2026"));
+    root.append(
+      gestures,
+      moods,
+      h("div", { class: "play-side" }, this.#words, this.#instead, this.#stop, this.#recordings),
+    );
   }
 
-  connect(person: StandIn): void {
+  /** Offer recordings. */
+  offer(names: readonly string[]): void {
+    for (const name of names) {
+      this.#recordings.append(h("option", { value: name }, sentenceCase(name.replaceAll("_", " "))));
+    }
+  }
+
+  connect(person: StandIn, recorded: Recorded): void {
     for (const [name, button] of this.#gestures) {
-      button.addEventListener("click", () => void person.perform(name));
+      button.addEventListener("click", () => {
+        recorded.stop();
+        void person.perform(name);
+      });
     }
     for (const [mood, button] of this.#moods) {
       button.addEventListener("click", () => person.setMood(mood));
@@ -60,16 +77,30 @@ export class PlayPanel {
     };
     this.#valence.input.addEventListener("input", fine);
     this.#arousal.input.addEventListener("input", fine);
-    this.#stop.addEventListener("click", () => person.stop());
-    this.#instead.addEventListener("click", () => void person.start(true));
+    this.#stop.addEventListener("click", () => {
+      person.stop();
+      recorded.stop();
+    });
+    this.#instead.addEventListener("click", () => {
+      const { name } = recorded.state;
+      if (name === null) void person.start(true);
+      else void recorded.start(name, true);
+    });
+    this.#recordings.addEventListener("change", () => {
+      const name = this.#recordings.value;
+      person.stop();
+      if (name === "") recorded.stop();
+      else void recorded.start(name);
+    });
   }
 
-  render({ phase, link, doing, mood, fault }: StandIn["state"]): void {
+  render({ doing, mood, ...person }: StandIn["state"], recorded: Recorded["state"]): void {
+    const { phase, link, fault } = recorded.phase === "off" ? person : recorded;
     const isOn = phase === "playing" || phase === "loading";
     const isAway = link === "taken" || link === "replaced";
     setState(this.#root, "phase", phase);
     for (const [name, button] of this.#gestures) {
-      setAttribute(button, "aria-pressed", `${phase === "playing" && doing === name}`);
+      setAttribute(button, "aria-pressed", `${person.phase === "playing" && doing === name}`);
     }
     for (const [own, button] of this.#moods) {
       const isIt = own.valence === mood.valence && own.arousal === mood.arousal;
@@ -79,15 +110,17 @@ export class PlayPanel {
     this.#arousal.show(mood.arousal);
     this.#stop.hidden = !isOn || isAway;
     this.#instead.hidden = !isOn || !isAway;
-    setText(this.#words, wordsOf(phase, isAway, fault));
+    if (this.#recordings.value !== (recorded.name ?? "")) this.#recordings.value = recorded.name ?? "";
+    const who = recorded.phase === "off" ? "A made-up person" : "A recorded person";
+    setText(this.#words, wordsOf(who, phase, isAway, fault));
   }
 }
 
-function wordsOf(phase: string, isAway: boolean, fault: string | null): string {
+function wordsOf(who: string, phase: string, isAway: boolean, fault: string | null): string {
   if (fault !== null) return fault;
   if (phase === "off") return "";
   if (isAway) return "Another sensor plays in this session.";
-  return phase === "loading" ? "A made-up person comes in." : "A made-up person.";
+  return phase === "loading" ? `${who} comes in.` : `${who}.`;
 }
 
 interface Slider {
