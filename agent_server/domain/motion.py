@@ -109,6 +109,21 @@ class Forecast:
 
 
 @dataclass(frozen=True, slots=True)
+class ForecastFigures:
+    """How good the forecasts were whose truth came within the last minute.
+
+    Attributes:
+        error_mm: Mean distance of the nine core joints over the two seconds.
+        zero_velocity_mm: The same for a body that stands still from the last seen frame on.
+        forecasts: How many were scored.
+    """
+
+    error_mm: float
+    zero_velocity_mm: float
+    forecasts: int
+
+
+@dataclass(frozen=True, slots=True)
 class BodyLost:
     """The followed body has left, or its sensor has.
 

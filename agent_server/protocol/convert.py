@@ -12,7 +12,7 @@ from agent_server.domain.arrays import Float32, Float64
 from agent_server.domain.command import Ack, AckStatus, Command
 from agent_server.domain.decision import Decision, SceneVerdict
 from agent_server.domain.gesture import Spread
-from agent_server.domain.motion import Forecast, Futures
+from agent_server.domain.motion import Forecast, ForecastFigures, Futures
 from agent_server.domain.scene import SceneSnapshot
 from agent_server.domain.skeleton import CoreFrame, SkeletonFrame
 from agent_server.errors import InvalidInput
@@ -142,6 +142,13 @@ def _future_bodies(futures: Futures) -> list[m.FutureBody]:
     some = futures.positions[:, FUTURES_EVERY - 1 :: FUTURES_EVERY].astype(np.float64).round(3)
     quality = futures.quality.astype(np.float64).round(4)
     return [m.FutureBody(*each) for each in zip(quality.tolist(), some.tolist(), strict=True)]
+
+
+def forecast_score_body(figures: ForecastFigures | None) -> m.ForecastScoreBody | None:
+    """How good forecasts were, for a monitor; None before any truth has come."""
+    if figures is None:
+        return None
+    return m.ForecastScoreBody(figures.error_mm, figures.zero_velocity_mm, figures.forecasts)
 
 
 def scene_message(snapshot: SceneSnapshot) -> m.SceneState:

@@ -29,6 +29,7 @@ from agent_server.service.sensing import Sensing
 from agent_server.service.store import Saved, SessionStore
 from agent_server.service.watching import Decided, Watcher
 from agent_server.service.worker import Inference, InferenceWorker
+from agent_server.stages.forecast_score import ForecastScore
 
 log = logging.getLogger(__name__)
 
@@ -115,6 +116,7 @@ class Session:
         self._wake = asyncio.Event()
         self._is_inferring = False
         self._is_skewed = False
+        self._forecasts = ForecastScore()
         if opening.saved is not None:
             self.delivery.restore(opening.saved)
 
@@ -260,6 +262,8 @@ class Session:
         for watcher in self._context.watchers:
             watcher.decided(seen)
         self._avatar.show_forecast(self.id, inference.forecast, window.end_ns)
+        if self._forecasts.push(window, inference.forecast):
+            self._warn_of_drift()
         self.counters["decisions"] += 1
         self.counters["predictor_failures"] += failure is not None
         decided = m.DecisionMessage(
@@ -334,6 +338,20 @@ class Session:
                 ),
             )
 
+    def _warn_of_drift(self) -> None:
+        """Tell the monitors when a minute's forecasts begin to be worse than none."""
+        figures = self._forecasts.figures()
+        if figures is None:
+            return
+        self.counters["forecast_drifts"] += 1
+        said = (
+            f"over the last minute forecasts were {figures.error_mm:g} mm off, and a body that "
+            f"stands still {figures.zero_velocity_mm:g} mm: is the sensor where it was, and its "
+            "rate and unit what it says?"
+        )
+        log.warning("session %s: %s", self.id, said)
+        self.audience.show("error", m.ErrorMessage("forecast_drift", said))
+
     def _stats(self) -> m.StatsMessage:
         c = self.counters
         return m.StatsMessage(
@@ -347,6 +365,7 @@ class Session:
             missed_telemetry=self.audience.missed,
             counters={**c, **self._core.perception.counters},
             clients=[client.stats() for client in self.audience.clients],
+            forecast_score=convert.forecast_score_body(self._forecasts.figures()),
         )
 
     def _timing(

@@ -258,6 +258,16 @@ class ClientStats(Part, frozen=True):
     missed: Annotated[Count, told("Telemetry that it was too slow for.")]
 
 
+class ForecastScoreBody(Part, frozen=True):
+    """How good the forecasts were whose two seconds have come within the last minute."""
+
+    error_mm: Annotated[float, told("Mean distance of the joints.", "mm", ge=0, le=1e6)]
+    zero_velocity_mm: Annotated[
+        float, told("The same for a body that stands still from then on.", "mm", ge=0, le=1e6)
+    ]
+    forecasts: Annotated[Count, told("How many were scored.")]
+
+
 class StatsMessage(Message, frozen=True, tag="stats"):
     """The session's counters since its start."""
 
@@ -271,3 +281,6 @@ class StatsMessage(Message, frozen=True, tag="stats"):
     missed_telemetry: Annotated[Count, told("Telemetry that monitors were too slow for.")]
     counters: Annotated[dict[str, Count], told("Everything else that is counted, by its name.")]
     clients: Annotated[list[ClientStats], told("The session's connections.")] = []  # noqa: RUF012
+    forecast_score: (
+        Annotated[ForecastScoreBody, told("How good the forecasts of the last minute were.")] | None
+    ) = None

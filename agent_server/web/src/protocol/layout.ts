@@ -532,6 +532,17 @@ const ClientStats: RecordLayout = {
   ],
 };
 
+const ForecastScoreBody: RecordLayout = {
+  name: "ForecastScoreBody",
+  tag: null,
+  omitsDefaults: false,
+  fields: [
+    { name: "error_mm", kind: ["float", 0, 1000000] },
+    { name: "zero_velocity_mm", kind: ["float", 0, 1000000] },
+    { name: "forecasts", kind: ["int", 0, 9007199254740991] },
+  ],
+};
+
 const StatsMessage: RecordLayout = {
   name: "StatsMessage",
   tag: "stats",
@@ -547,6 +558,7 @@ const StatsMessage: RecordLayout = {
     { name: "missed_telemetry", kind: ["int", 0, 9007199254740991] },
     { name: "counters", kind: ["map", ["int", 0, 9007199254740991], null] },
     { name: "clients", kind: ["list", ["record", ClientStats], null], default: [] },
+    { name: "forecast_score", kind: ["record", ForecastScoreBody], isNullable: true, default: null },
   ],
 };
 

@@ -707,6 +707,16 @@ export interface ClientStats {
   readonly missed: number;
 }
 
+/** How good the forecasts were whose two seconds have come within the last minute. */
+export interface ForecastScoreBody {
+  /** Mean distance of the joints. (mm, 0..1000000) */
+  readonly error_mm: number;
+  /** The same for a body that stands still from then on. (mm, 0..1000000) */
+  readonly zero_velocity_mm: number;
+  /** How many were scored. (count, 0..2^53 - 1) */
+  readonly forecasts: number;
+}
+
 /** The session's counters since its start. */
 export interface StatsMessage {
   readonly type: "stats";
@@ -730,6 +740,8 @@ export interface StatsMessage {
   readonly counters: Readonly<Record<string, number>>;
   /** The session's connections. */
   readonly clients: readonly ClientStats[];
+  /** How good the forecasts of the last minute were. */
+  readonly forecast_score: ForecastScoreBody | null;
 }
 
 /**

@@ -18,7 +18,8 @@ namespace AgentServer
             long rejectedMessages,
             long missedTelemetry,
             IReadOnlyDictionary<string, long> counters,
-            IReadOnlyList<ClientStats> clients = null)
+            IReadOnlyList<ClientStats> clients = null,
+            ForecastScoreBody forecastScore = null)
         {
             Frames = frames;
             Windows = windows;
@@ -30,6 +31,7 @@ namespace AgentServer
             MissedTelemetry = missedTelemetry;
             Counters = counters ?? throw new ArgumentNullException(nameof(counters));
             Clients = clients ?? Array.Empty<ClientStats>();
+            ForecastScore = forecastScore;
         }
 
         /// <inheritdoc/>
@@ -73,6 +75,9 @@ namespace AgentServer
         /// <summary>The session's connections.</summary>
         public IReadOnlyList<ClientStats> Clients { get; }
 
+        /// <summary>How good the forecasts of the last minute were. May be null.</summary>
+        public ForecastScoreBody ForecastScore { get; }
+
         static readonly string[] Required = { "frames", "windows", "decisions", "commands", "skipped_windows", "predictor_failures", "rejected_messages", "missed_telemetry", "counters" };
 
         internal static StatsMessage Read(WireReader reader)
@@ -87,6 +92,7 @@ namespace AgentServer
             long missedTelemetryValue = default(long);
             IReadOnlyDictionary<string, long> countersValue = default(IReadOnlyDictionary<string, long>);
             IReadOnlyList<ClientStats> clientsValue = null;
+            ForecastScoreBody forecastScoreValue = null;
             uint seen = 0;
             string key;
             reader.BeginMap();
@@ -133,20 +139,24 @@ namespace AgentServer
                     case "clients":
                         clientsValue = reader.List(int.MaxValue, item => ClientStats.Read(item));
                         break;
+                    case "forecast_score":
+                        forecastScoreValue = reader.Null() ? null : ForecastScoreBody.Read(reader);
+                        break;
                     default:
                         reader.Skip();
                         break;
                 }
             }
             reader.Require(seen, Required);
-            return new StatsMessage(framesValue, windowsValue, decisionsValue, commandsValue, skippedWindowsValue, predictorFailuresValue, rejectedMessagesValue, missedTelemetryValue, countersValue, clientsValue);
+            return new StatsMessage(framesValue, windowsValue, decisionsValue, commandsValue, skippedWindowsValue, predictorFailuresValue, rejectedMessagesValue, missedTelemetryValue, countersValue, clientsValue, forecastScoreValue);
         }
 
         internal override void Write(WireWriter writer)
         {
             int count = 10;
             if (Clients.Count != 0) count++;
-            writer.BeginMap(count, 11);
+            if (ForecastScore != null) count++;
+            writer.BeginMap(count, 12);
             writer.Key("type");
             writer.Str("stats");
             writer.Key("frames");
@@ -171,6 +181,11 @@ namespace AgentServer
             {
                 writer.Key("clients");
                 writer.List(Clients, (item, itemValue) => itemValue.Write(item));
+            }
+            if (ForecastScore != null)
+            {
+                writer.Key("forecast_score");
+                ForecastScore.Write(writer);
             }
             writer.EndMap();
         }
