@@ -91,8 +91,8 @@ def cut(
         )
     if not report.exact:
         console.print(
-            "  it begins in the middle: the first second fills the window, and decisions may "
-            "differ a little from those recorded"
+            f"  it begins at {report.start_s:.3f} s, where a window began: after a second windows "
+            "are the same to the bit, gate and cool-down once they have settled"
         )
 
 
