@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: setup demo test verify-long lint bench bench-protocol recordings page clean
+.PHONY: setup demo test verify-long lint bench bench-protocol recordings page soak audit clean
 
 setup: $(STAMP)
 
@@ -49,6 +49,22 @@ bench-protocol: page
 	$(BIN)/python -m tests.bench.command_latency --language csharp --json
 	$(BIN)/python -m tests.bench.command_latency --language node --json
 	$(BIN)/python -m tests.bench.command_latency --language browser --json
+
+# Three minutes by `make soak MINUTES=3`.
+soak: MINUTES ?= 30
+soak: $(STAMP)
+	$(BIN)/python -m tests.bench.soak --minutes $(MINUTES) --sessions 50 --json
+
+# What is installed for users, alone: known vulnerabilities, and a bill of materials.
+audit: AUDIT := runs/audit
+audit: $(STAMP)
+	rm -rf $(AUDIT)
+	$(PYTHON) -m venv $(AUDIT)/product
+	$(AUDIT)/product/bin/python -m pip install --quiet --disable-pip-version-check '.[otel]'
+	$(PYTHON) -m venv $(AUDIT)/tools
+	$(AUDIT)/tools/bin/python -m pip install --quiet --disable-pip-version-check pip-audit cyclonedx-bom
+	$(AUDIT)/tools/bin/cyclonedx-py environment --output-reproducible --output-file $(AUDIT)/sbom.json $(AUDIT)/product/bin/python
+	$(AUDIT)/tools/bin/pip-audit --skip-editable --path "$$($(AUDIT)/product/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
 
 recordings: $(STAMP)
 	$(BIN)/python recorded_streams/make.py

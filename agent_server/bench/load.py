@@ -112,8 +112,8 @@ async def measure_load(sessions: int, load: Load) -> LoadResult:
     machine_load = os.getloadavg()[0]
     with tempfile.TemporaryDirectory() as folder:
         stream = Path(folder) / "stream.msgpack"
-        stream.write_bytes(msgspec.msgpack.encode(_stream(load)))
-        async with _server(load.stack, sessions, Path(folder)) as url:
+        stream.write_bytes(msgspec.msgpack.encode(stream_of(load)))
+        async with server_process(load.stack, sessions, Path(folder)) as url:
             told, before, after = await _play(url, sessions, load, stream)
     decisions = [ms for one in told for ms in one.decisions_ms]
     commands = [ms for one in told for ms in one.commands_ms]
@@ -179,7 +179,8 @@ def largest(runs: list[LoadResult]) -> int:
     return max((run.sessions for run in runs if run.holds), default=0)
 
 
-def _stream(load: Load) -> list[Sent]:
+def stream_of(load: Load) -> list[Sent]:
+    """What every sensor sends: a synthetic person, encoded."""
     codec = CODECS[SUBPROTOCOLS[load.coding]]
     sent = []
     for event in recorded_events("demo"):
@@ -255,12 +256,24 @@ def _figures(url: str) -> _Figures:
 
 
 @asynccontextmanager
-async def _server(stack: Stack, sessions: int, folder: Path) -> AsyncIterator[str]:
-    """A server in a process of its own, on a free port."""
+async def server_process(
+    stack: Stack, sessions: int, folder: Path, settings_toml: str = ""
+) -> AsyncIterator[str]:
+    """A server in a process of its own, on a free port; gives its address.
+
+    Args:
+        stack: What carries its websockets.
+        sessions: How many it must admit.
+        folder: Where its settings may be written.
+        settings_toml: Further settings of its section ``server``.
+
+    Raises:
+        AgentServerError: If it does not start.
+    """
     settings = folder / "settings.toml"
     settings.write_text(
         f"[server]\nport = 0\nmax_sessions = {sessions}\nmax_connections = {4 * sessions + 8}\n"
-        f"max_connections_per_address = {4 * sessions + 8}\n"
+        f"max_connections_per_address = {4 * sessions + 8}\n{settings_toml}"
     )
     command = {
         "uvicorn": ("-m", "agent_server", "serve", "--json", "--config", str(settings)),

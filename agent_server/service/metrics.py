@@ -4,6 +4,7 @@ Durations are put into histograms as they happen, some 35 observations a second 
 else is counted by the sessions anyway and only read when somebody asks.
 """
 
+import asyncio
 from collections import Counter as Tally
 from collections import deque
 from collections.abc import Iterator, Mapping
@@ -167,6 +168,9 @@ class _Live(Collector):
             total.update(_counted(session))
         yield from self._counts(total, len(sessions))
         yield from self._states(sessions)
+        yield GaugeMetricFamily(
+            "agent_server_tasks", "Tasks of the event loop.", len(asyncio.all_tasks())
+        )
         yield from self._versions()
 
     def _counts(self, total: Tally[str], open_now: int) -> Iterator[Metric]:
