@@ -15,6 +15,7 @@ from agent_server.cli.doctor import doctor
 from agent_server.cli.export import export
 from agent_server.cli.gestures import gestures
 from agent_server.cli.qa import qa
+from agent_server.cli.record import record
 from agent_server.cli.recover import recover
 from agent_server.cli.replay import replay
 from agent_server.cli.schema import schema
@@ -31,7 +32,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, serve, replay, convert, recover, schema, config, token, doctor):
+for command in (demo, serve, replay, convert, record, recover, schema, config, token, doctor):
     app.command()(command)
 for tool in (info, cut, merge, annotate, anonymise, export, qa):
     app.command(rich_help_panel="Recordings")(tool)
