@@ -7,9 +7,11 @@ from enum import IntEnum
 
 SMOOTHING = 0.1
 """Weight of a new measurement; at ten a second the average is over about a second."""
-TELEMETRY_S = (0.05, 0.025)
+LARGEST_S = 0.5
+"""More than this is not believed of one measurement: a hiccup is no load."""
+TELEMETRY_S = (0.1, 0.05)
 """Telemetry is left out from this average lateness on, until it is below the second one."""
-WINDOWS_S = (0.15, 0.075)
+WINDOWS_S = (0.25, 0.12)
 """... and every other window, and no new session is opened."""
 
 
@@ -34,7 +36,7 @@ class LoadGauge:
 
     def push(self, lag_s: float) -> bool:
         """Take a measurement; tells whether the load is another one now."""
-        self._average_s += SMOOTHING * (lag_s - self._average_s)
+        self._average_s += SMOOTHING * (min(lag_s, LARGEST_S) - self._average_s)
         before = self.load
         if self._is_over(WINDOWS_S, Load.WINDOWS):
             self.load = Load.WINDOWS

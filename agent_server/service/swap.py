@@ -52,7 +52,10 @@ class Swapper:
                 "this server changes no models: name the folder from which it may take them, "
                 "folder in [models]"
             )
-        folder = (self._allowed / path).resolve()
+        try:
+            folder = (self._allowed / path).resolve()
+        except (OSError, ValueError) as error:
+            raise BundleError(f"{path!r} is no folder: {error}") from None
         if not folder.is_relative_to(self._allowed):
             raise BundleError(
                 f"{path} lies outside the folder that models may be taken from: name one within it"
@@ -89,8 +92,11 @@ class Swapper:
 
 def _loaded(before: Models, folders: dict[Swappable, Path], which: tuple[Swappable, ...]) -> Models:
     models = before
-    if "predictor" in which:
-        models = replace(models, predictor=OnnxPredictor(folders["predictor"]))
-    if "classifier" in which:
-        models = replace(models, classifier=OnnxClassifier(folders["classifier"]))
+    try:
+        if "predictor" in which:
+            models = replace(models, predictor=OnnxPredictor(folders["predictor"]))
+        if "classifier" in which:
+            models = replace(models, classifier=OnnxClassifier(folders["classifier"]))
+    except OSError as error:
+        raise BundleError(f"a bundle cannot be read: {error}") from error
     return models

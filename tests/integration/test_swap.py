@@ -107,6 +107,8 @@ async def test_a_good_bundle_takes_over_and_no_session_notices(tmp_path):
         ("nowhere", 422, "manifest.json"),
         ("../outside", 422, "lies outside"),
         ("/etc", 422, "lies outside"),
+        ("with\0zero", 422, "is no folder"),
+        ("x" * 300, 422, "manifest.json"),
         ("altered", 422, "was altered"),
         ("wrong_golden", 422, "golden output"),
         ("classifier", 422, "can classify"),

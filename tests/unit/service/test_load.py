@@ -14,7 +14,7 @@ def pushed(gauge, lag_s, times=60):
 
 def test_telemetry_goes_first_then_windows_and_they_come_back_in_the_other_order():
     gauge = LoadGauge()
-    order = [pushed(gauge, lag_s) for lag_s in (0.01, 0.06, 0.2, 0.1, 0.06, 0.04, 0.01)]
+    order = [pushed(gauge, lag_s) for lag_s in (0.01, 0.12, 0.3, 0.2, 0.11, 0.08, 0.01)]
     assert order == [
         *(Load.NONE, Load.TELEMETRY, Load.WINDOWS),
         *(Load.WINDOWS, Load.TELEMETRY, Load.TELEMETRY, Load.NONE),
@@ -23,7 +23,7 @@ def test_telemetry_goes_first_then_windows_and_they_come_back_in_the_other_order
 
 def test_one_hiccup_is_no_load():
     gauge = LoadGauge()
-    assert not gauge.push(0.4)
+    assert not gauge.push(4.0)
     assert gauge.load is Load.NONE
 
 
