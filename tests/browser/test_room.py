@@ -4,6 +4,7 @@ import asyncio
 import itertools
 import time
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import httpx
@@ -73,6 +74,16 @@ async def watch(page, is_over, *, moves=True):
             states.append(await page.evaluate("window.agentPage.state()"))
             await asyncio.sleep(0.02)
     return states
+
+
+def hasty(rule):
+    """Whatever somebody asks for ends what is being done about the window."""
+    return replace(rule, preempts=frozenset({"close_window"}))
+
+
+def patient(rule):
+    """Commands stay worth starting for as long as a slow machine needs to load a page."""
+    return replace(rule, reaction=replace(rule.reaction, ttl_ms=60_000))
 
 
 def is_at_a_command(state):
@@ -171,7 +182,7 @@ async def test_each_gesture_has_its_reaction_and_only_where_there_is_something_t
 
 
 async def test_a_reaction_is_cut_short_and_taken_back_gracefully():
-    async with room(preempts={"loud": "close_window"}) as (server, page, _):
+    async with room(alter_rule=hasty) as (server, page, _):
         async with playing(server, "cold"):
             await watch(page, is_at_a_command)
             await watch(page, lambda state: state["room"]["agent"]["stance"] == "walking")
@@ -197,7 +208,7 @@ async def test_a_reaction_is_cut_short_and_taken_back_gracefully():
 
 
 async def test_a_reaction_goes_on_over_a_lost_connection_and_starts_again_on_a_new_page():
-    async with room() as (server, page, _):
+    async with room(alter_rule=patient) as (server, page, _):
         async with playing(server, "cold"):
             await watch(page, is_at_a_command)
         await watch(page, lambda state: state["room"]["agent"]["stance"] == "walking")

@@ -40,14 +40,14 @@ async def live(
     *,
     port=0,
     authority=None,
-    preempts=None,
+    alter_rule=None,
     hub=None,
     access=OPEN,
 ):
     """Serve on a free port, or a given one, while the context lasts.
 
-    ``authority`` says of objects by name whose word holds, ``preempts`` of gestures by name which
-    running reactions they cut short; ``hub`` is one of the test's own.
+    ``authority`` says of objects by name whose word holds, ``alter_rule`` makes another rule of
+    each; ``hub`` is one of the test's own.
     """
     settings = settings or Settings()
     server = msgspec.structs.replace(settings.server, port=port)
@@ -56,9 +56,9 @@ async def live(
     rules = default_rules(models.classifier.labels)
     for name, side in (authority or {}).items():
         rules.objects[name] = replace(rules.objects[name], authority=Authority(side))
-    for gesture, running in (preempts or {}).items():
-        (rule,) = rules.rules[gesture]
-        rules.rules[gesture] = (replace(rule, preempts=frozenset({running})),)
+    if alter_rule is not None:
+        for gesture, own in rules.rules.items():
+            rules.rules[gesture] = tuple(map(alter_rule, own))
     if hub is None:
         state = settings.server.state
         clock = SystemClock()
