@@ -46,7 +46,7 @@ log = logging.getLogger(__name__)
 
 PREDICTOR = "ma_wgan_server"
 CLASSIFIER = "interformer_server"
-SAMPLER = "hp_gan_server"
+SAMPLER = "sampler_server"
 DETECTOR = "face_detector"
 MESHES = {"full": "face_mesh", "fast": "face_mesh_fast"}
 AFFECT_SOURCES = ("mesh", "points68", "blendshapes")

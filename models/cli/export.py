@@ -68,17 +68,22 @@ def _export(
     show(export_predictor(family, runs, out, version, data, cache).results, as_json=False)
 
 
-@app.command("hp_gan")
-def export_hp_gan(
+@app.command("sampler")
+def export_drawn(
     data: DataOption,
     run: RunOption,
+    generator: Annotated[
+        Path | None,
+        typer.Option("--generator", help="Run of a manifold-aware GAN with noise that draws."),
+    ] = None,
     out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = SAMPLER,
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
 ) -> None:
-    """Export, check and measure a GAN that draws several futures."""
+    """Export, check and measure what draws futures, with HP-GAN's network that judges them."""
     torch.set_num_threads(1)
-    show(export_sampler(run, out, version, data, cache).results, as_json=False)
+    manifest = export_sampler(run, generator, out, version, data, cache)
+    show(manifest.results, as_json=False)
 
 
 @app.command("interformer")

@@ -39,7 +39,7 @@ CACHE = Path("runs/cache")
 INTERACTION_RUNS = Path("runs/interaction")
 ARTIFACTS = Path(__file__).parents[1] / "artifacts"
 PREDICTOR = ARTIFACTS / "ma_wgan_server"
-SAMPLER = ARTIFACTS / "hp_gan_server"
+SAMPLER = ARTIFACTS / "sampler_server"
 CLASSIFIER = ARTIFACTS / "interformer_server"
 C = TypeVar("C", MaWganConfig, SimlpeConfig, HpGanConfig, InterformerConfig, GeneratorConfig)
 

@@ -7,7 +7,8 @@ from agent_server.domain.arrays import Float32
 from models.evaluation.sampled import drawn_figures, trained_sampler
 from models.hp_gan.config import CONFIGS
 from models.hp_gan.sampler import Sampler
-from models.hp_gan.train import load_hp_gan, train
+from models.hp_gan.source import server_source
+from models.hp_gan.train import load_hp_gan, train_on
 from models.training.run import INFO, Run
 
 ROWS = {
@@ -30,13 +31,16 @@ def losses_report(
         cache: Folder of generated recordings.
         seed: Of every training.
     """
+    missing = [name for name in ROWS.values() if not (folder / name / INFO).exists()]
+    if missing:
+        source = server_source(data, cache, CONFIGS["short"].synthetic_sequences)
+        for name in missing:
+            command = f"python -m models train hp_gan --config {name} --data DIR --out RUN"
+            run = Run(folder / name, CONFIGS[name], seed, command, resume=False)
+            train_on(CONFIGS[name], run, source)
     rows: dict[str, Any] = {}
     for name, config in ROWS.items():
-        place = folder / config
-        if not (place / INFO).exists():
-            command = f"python -m models train hp_gan --config {config} --data DIR --out RUN"
-            train(CONFIGS[config], Run(place, CONFIGS[config], seed, command, False), data, cache)
-        generator, _, judge = load_hp_gan(place)
+        generator, _, judge = load_hp_gan(folder / config)
         draw = trained_sampler(Sampler(generator, generator.config.noise, judge).eval())
         rows[name] = {
             where: drawn_figures(draw(seen, DRAWS), seen, true)

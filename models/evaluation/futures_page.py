@@ -9,6 +9,7 @@ import torch
 
 from agent_server.domain.arrays import Float32
 from agent_server.domain.motion import SEEN_FRAMES
+from models.data.msrc12 import read_streams
 from models.data.splits import cmu_split, synthetic_split
 from models.data.windows import Recording, cut
 from models.evaluation.critic_features import features_report
@@ -67,8 +68,9 @@ def futures_report(
             name: judge.quality(*map(torch.from_numpy, pair)).numpy() for name, pair in held.items()
         }
     losses = losses_report(runs, held, data, cache)
-    features = features_report(critic, generator.config, data)
-    lived, gestures = live_takes(takes), real_gestures(data)
+    streams = read_streams(data / "msrc12")
+    features = features_report(critic, generator.config, streams)
+    lived, gestures = live_takes(takes), real_gestures(streams)
     other = trained_sampler(
         Sampler(_ma_wgan(runs / "ma_wgan", data, cache), MA_WGAN.network.noise, judge).eval()
     )

@@ -6,7 +6,6 @@ drawn futures that are judged real. Beside that stand the drawn futures alone.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,16 +14,17 @@ from numpy.typing import NDArray
 from agent_server.domain.arrays import Float32
 from agent_server.domain.gesture import GESTURES
 from agent_server.domain.motion import SEEN_FRAMES
+from models.data.msrc12 import TaggedStream
 from models.data.windows import AMBIGUOUS, Recording, Stretch, whole_labels, window_labels
 from models.evaluation.decision_times import LiveStream, answers
 from models.evaluation.gestures import Classify, Predict, calibration_error, sliding_seen
 from models.evaluation.sampled import GOOD, Draw
-from models.evaluation.sim2real import msrc12_windows
+from models.evaluation.sim2real import known_windows
 
 COUNTS = (1, 5, 10)
 """How many futures are compared."""
-EVERY = 4
-"""Every fourth of the test takes."""
+EVERY = 6
+"""Every sixth of the test takes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +155,7 @@ def several_report(
 
 
 def live_takes(recordings: Sequence[Recording]) -> list[Take]:
-    """Every fourth of the recordings, as the server lives through it."""
+    """Every sixth of the recordings, as the server lives through it."""
     return [
         Take(*sliding_seen(each.observed), len(each.observed), each.stretches)
         for each in recordings[::EVERY]
@@ -163,13 +163,9 @@ def live_takes(recordings: Sequence[Recording]) -> list[Take]:
     ]
 
 
-def real_gestures(data: Path) -> Named:
-    """The first second of each of MSRC-12's gestures that the server knows by another name.
-
-    Raises:
-        InvalidInput: If the set is not there.
-    """
-    motion, asked = msrc12_windows(data)
+def real_gestures(streams: Sequence[TaggedStream]) -> Named:
+    """The first second of each of MSRC-12's gestures that the server knows by another name."""
+    motion, asked = known_windows(streams)
     seen = np.ascontiguousarray(motion[:, :SEEN_FRAMES])
     return Named(seen, np.array([GESTURES.index(name) for name in asked]))
 

@@ -9,7 +9,7 @@ would live through it, window after window (``live``). A recording of UTD-MHAD i
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from agent_server.domain.arrays import Float32
 from agent_server.domain.gesture import GESTURES, IDLE
 from agent_server.domain.motion import SEEN_FRAMES
 from agent_server.skeleton.readers.utd_mhad import read_utd_mhad
-from models.data.msrc12 import TAGS, read_streams, tag_windows
+from models.data.msrc12 import TAGS, TaggedStream, read_streams, tag_windows
 from models.data.real import core_stream, source_files
 from models.evaluation.gestures import (
     Classify,
@@ -48,7 +48,11 @@ def msrc12_windows(data: Path) -> tuple[Float32, list[str]]:
     Raises:
         InvalidInput: If the set is not there.
     """
-    streams = read_streams(data / "msrc12")
+    return known_windows(read_streams(data / "msrc12"))
+
+
+def known_windows(streams: Sequence[TaggedStream]) -> tuple[Float32, list[str]]:
+    """The same of recordings that have been read."""
     windows = tag_windows(streams, {stream.subject for stream in streams})
     tags = [TAGS[label] for label in windows.labels.tolist()]
     index = np.flatnonzero([tag in MSRC12 for tag in tags])

@@ -20,6 +20,8 @@ SETS = {
 FAMILIES = {
     "ma_wgan": "A generator trained with a critic on tangent vectors of spheres of square-root "
     "velocity functions (manifold-aware Wasserstein GAN).",
+    "hp_gan": "HP-GAN: a recurrent generator from sequence to sequence with chance in its states, "
+    "taught by a discriminator.",
     "simlpe": "siMLPe (Back to MLP): linear maps over the DCT of the past.",
 }
 SAMPLED = {"cmu": SETS["server"], "synthetic": SETS["server-synthetic"]}
@@ -89,8 +91,8 @@ def sampler_card(manifest: MotionManifest) -> str:
         f"{manifest.rate_hz} Hz. The random vectors are inside the graph: a number means the same "
         "future of a motion everywhere.",
         "",
-        "HP-GAN: a recurrent generator from sequence to sequence with chance in its states, taught "
-        "by a discriminator. A quality network was trained beside the two and taught neither.",
+        f"{FAMILIES[manifest.training.command.split()[4]]} The quality network of HP-GAN was "
+        "trained beside it and taught nobody.",
         "",
         "## Measured",
         "Held-out windows every second; four draws of each.",
@@ -117,8 +119,8 @@ def sampler_card(manifest: MotionManifest) -> str:
             "",
             *made(
                 manifest,
-                f"the quality network chose the checkpoint of update {manifest.results['update']}, "
-                "on validation people",
+                f"the checkpoint is that of update {manifest.results['update']}, chosen on "
+                "validation people and recordings",
             ),
         ]
     )

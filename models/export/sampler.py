@@ -35,6 +35,7 @@ from models.export.card import sampler_card
 from models.export.onnx import OPSET, TOLERANCE, write_graph
 from models.hp_gan.sampler import DRAWS, Sampler
 from models.hp_gan.train import load_hp_gan
+from models.ma_wgan.train import load_predictor
 from models.training.run import read_best, read_info
 
 MEASURED = {"server": "cmu", "server-synthetic": "synthetic"}
@@ -47,12 +48,13 @@ MM = np.float32(1000)
 
 
 def export_sampler(
-    run: Path, folder: Path, version: str, data: Path, cache: Path
+    run: Path, other: Path | None, folder: Path, version: str, data: Path, cache: Path
 ) -> MotionManifest:
     """Write, check and measure the bundle of a run's best networks.
 
     Args:
-        run: Folder of the training run.
+        run: Folder of HP-GAN's run; its quality network judges.
+        other: Run of a manifold-aware GAN with noise that draws in the generator's place, or None.
         folder: Folder of the bundle.
         version: Version of the model.
         data: Folder that holds the set folders.
@@ -61,9 +63,10 @@ def export_sampler(
     Raises:
         BundleError: If ONNX does not compute what torch does.
     """
-    info = read_info(run)
+    info = read_info(other or run)
     generator, _, judge = load_hp_gan(run)
-    network = Sampler(generator, generator.config.noise, judge).eval()
+    drawing = generator if other is None else load_predictor(other)
+    network = Sampler(drawing, drawing.config.noise, judge).eval()
     windows = {
         name: _metres(protocol_named(protocol).windows(data, cache))
         for protocol, name in MEASURED.items()
@@ -77,7 +80,7 @@ def export_sampler(
             **{name: _figures(network, part) for name, part in windows.items()},
             "onnx_difference": write_sampler(network, checked, draft),
             "latency": _latency(draft, checked[:1]),
-            "update": read_best(run)["step"],
+            "update": read_best(other or run)["step"],
         }
         manifest = MotionManifest(
             format_version=FORMAT_VERSION,

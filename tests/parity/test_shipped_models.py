@@ -14,6 +14,7 @@ from agent_server.inference.manifest import (
     MotionManifest,
     read_manifest,
 )
+from agent_server.inference.runtime import OnnxSampler
 from models.export.onnx import is_batch_exact
 from models.ops.session import OnnxModel
 
@@ -69,6 +70,25 @@ def test_the_future_follows_on_from_the_last_seen_pose() -> None:
     step = np.linalg.norm(model(seen)[:, 0] - seen[:, -1], axis=-1)
     last = np.linalg.norm(seen[:, -1] - seen[:, -2], axis=-1)
     assert step.mean() < 2 * last.mean() + 0.01
+
+
+def test_the_sampler_ships_with_its_judge_and_gives_its_goldens_again() -> None:
+    folder = ARTIFACTS / "sampler_server"
+    sampler = OnnxSampler(folder, 15)
+    with np.load(folder / GOLDEN_FILE) as golden:
+        for seen, draw, future, quality in zip(
+            *(golden[name] for name in ("seen", "draw", "future", "quality")), strict=True
+        ):
+            futures, qualities = sampler.draw(seen, int(draw) + 1)
+            np.testing.assert_allclose(futures[draw], future, atol=1e-4)
+            np.testing.assert_allclose(qualities[draw], quality, atol=1e-4)
+            again, same = sampler.draw(seen, int(draw) + 1)
+            assert again.tobytes() == futures.tobytes()
+            assert same.tobytes() == qualities.tobytes()
+    card = (folder / "CARD.md").read_text()
+    assert "synthetic: synthetic" in card
+    assert "free for all uses" in card
+    assert "of the last pose repeated" in card
 
 
 def test_probabilities_are_probabilities() -> None:

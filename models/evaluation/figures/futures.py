@@ -100,7 +100,7 @@ def features_plot(shares: dict[str, Any]) -> Plot:
         "Features",
         f"Epochs to the best accuracy of a random start, from the discriminator and from random "
         f"weights, by share of the labels: {said}",
-        "MSRC-12's twelve gestures, unseen people, mean of three seeds. The line is the best that "
+        "MSRC-12's twelve gestures, unseen people, mean of two seeds. The line is the best that "
         "the random start reaches.",
         png(made),
     )

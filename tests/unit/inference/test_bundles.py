@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from agent_server import assets
-from agent_server.config import FaceSettings, Settings
+from agent_server.config import FaceSettings, ModelSettings, Settings
 from agent_server.domain.gesture import GESTURES
 from agent_server.errors import BundleError, InferenceError
 from agent_server.inference.manifest import read_manifest, write_manifest
@@ -17,6 +17,7 @@ from agent_server.inference.runtime import (
     OnnxClassifier,
     OnnxFaceNetwork,
     OnnxPredictor,
+    OnnxSampler,
 )
 from agent_server.transports.server import (
     AFFECT_SOURCES,
@@ -24,6 +25,7 @@ from agent_server.transports.server import (
     DETECTOR,
     MESHES,
     PREDICTOR,
+    SAMPLER,
     load_models,
 )
 from tests.support.bodies import core_joints
@@ -54,6 +56,23 @@ def test_what_ships_loads_and_gives_what_it_promises():
     np.testing.assert_allclose(probabilities.sum(axis=1), 1.0, atol=1e-5)
     assert models.classifier.labels == GESTURES
     assert all(len(digest) == 12 for digest in models.hashes.values())
+
+
+def test_a_sampler_is_loaded_on_request_alone():
+    assert load_models().drawing is None
+    drawing = load_models(Settings(models=ModelSettings(futures=4))).drawing
+    assert (drawing.count, drawing.least_quality) == (4, 0.5)
+    futures, quality = drawing.sampler.draw(motions(1, 25)[0], 3)
+    assert futures.shape == (3, 50, 9, 3)
+    assert ((quality >= 0) & (quality <= 1)).all()
+    assert (futures[0] != futures[1]).any()
+
+
+def test_a_sampler_that_holds_too_few_draws_is_refused():
+    with pytest.raises(BundleError, match="can draw 16 futures, 17 are asked for"):
+        OnnxSampler(assets.bundles() / SAMPLER, 17)
+    with pytest.raises(BundleError, match="can predict, one that can sample"):
+        OnnxSampler(assets.bundles() / PREDICTOR, 2)
 
 
 @pytest.mark.parametrize(
