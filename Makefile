@@ -31,6 +31,8 @@ verify-long: $(STAMP)
 	$(BIN)/python -m tests.bench.disconnects --language python --count 1000 --json
 	$(BIN)/python -m tests.bench.disconnects --language csharp --count 1000 --json
 	$(BIN)/python -m tests.bench.disconnects --language node --count 1000 --json
+	$(BIN)/python -m tests.bench.chaos --json
+	$(BIN)/python -m tests.bench.bad_input --count 2000000 --json
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
