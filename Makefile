@@ -31,6 +31,9 @@ verify-long: $(STAMP)
 	$(BIN)/python -m tests.bench.disconnects --language python --count 1000 --json
 	$(BIN)/python -m tests.bench.disconnects --language csharp --count 1000 --json
 	$(BIN)/python -m tests.bench.disconnects --language node --count 1000 --json
+	$(BIN)/python -m tests.bench.killed_recordings --count 200 --json
+	$(BIN)/python -m tests.bench.damaged_recordings --count 500 --fuzz-bytes 10000000 --json
+	$(BIN)/agent-server bench replay --runs 100 --json
 	$(BIN)/python -m tests.bench.chaos --json
 	$(BIN)/python -m tests.bench.bad_input --count 2000000 --json
 
@@ -45,6 +48,8 @@ bench: $(STAMP)
 	$(BIN)/agent-server bench ingest --json
 	$(BIN)/agent-server bench decision --json
 	$(BIN)/agent-server bench load --sessions 10 --json
+	$(BIN)/agent-server bench replay --json
+	$(BIN)/agent-server bench recording --json
 
 bench-protocol: page
 	$(BIN)/python -m tests.bench.command_latency --language python --json

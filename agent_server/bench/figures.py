@@ -31,3 +31,14 @@ def resident_mb(pid: int) -> float | None:
         if line.startswith("VmRSS:"):
             return round(int(line.split()[1]) / 1024, 1)
     return None
+
+
+def peak_resident_mb() -> float | None:
+    """Most resident memory that this process has ever had, in MB; None where nobody tells."""
+    status = Path("/proc/self/status")
+    if not status.exists():
+        return None
+    lines = status.read_text("ascii").splitlines()
+    return next(
+        (round(int(line.split()[1]) / 1024, 1) for line in lines if line.startswith("VmHWM:")), None
+    )

@@ -24,6 +24,7 @@ from agent_server.bench.load import (
 )
 from agent_server.bench.load_plot import load_plot
 from agent_server.bench.reactions import measure_reactions, played, recorded
+from agent_server.bench.recording import measure_recording
 from agent_server.bench.replay import measure_replay
 from agent_server.cli.options import FuturesOption, JsonOption, run, settings_with
 from agent_server.config import Settings
@@ -81,6 +82,15 @@ def replay(
     _show(result, as_json=as_json)
     if result.identical != runs:
         raise typer.Exit(1)
+
+
+@bench.command()
+def recording(
+    minutes: Annotated[float, typer.Option(min=0.1, help="Length of the recording.")] = 60.0,
+    as_json: JsonOption = False,
+) -> None:
+    """Write and read a long recording of a body and a face: size, memory, seeking."""
+    _show(measure_recording(minutes), as_json=as_json)
 
 
 @bench.command()

@@ -54,14 +54,20 @@ class ServerProcess:
 
 
 @contextlib.asynccontextmanager
-async def server_process(state):
-    """A server that is not started yet; whatever runs in the end is killed."""
+async def server_process(state, record=None):
+    """A server that is not started yet; whatever runs in the end is killed.
+
+    Args:
+        state: Folder in which it remembers sessions.
+        record: Folder in which it records them; None records nothing.
+    """
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     nursery = await asyncio.create_subprocess_exec(
         *(sys.executable, "-m", "tests.support.scripted_server"),
         *("--port", str(port), "--state", str(state), "--json", "--respawn"),
+        *(() if record is None else ("--record", str(record))),
         stdin=asyncio.subprocess.PIPE,
         stdout=asyncio.subprocess.PIPE,
         cwd=ROOT,
