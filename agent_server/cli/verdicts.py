@@ -79,16 +79,20 @@ def _faults(rows: list[FaultResult]) -> Table:
         table.add_column(heading, justify="right")
     clean = rows[0]
     for row in rows:
-        lost = row.right - clean.right
         table.add_row(
             row.name,
             f"{row.right}/{row.asked}",
-            "" if row is clean else f"[red]{lost:+d}[/]" if lost < 0 else f"{lost:+d}",
+            "" if row is clean else _lost(row.right - clean.right),
             f"{row.false / row.hours:.1f}" if row.hours else "",
             _ms(row.delay_p50_ms),
             str(row.refused) if row.refused else "",
         )
     return table
+
+
+def _lost(change: int) -> str:
+    said = f"{change:+d}" if change else "0"
+    return f"[red]{said}[/]" if change < 0 else said
 
 
 def _changes(console: Console, comparison: Comparison) -> None:

@@ -3,13 +3,11 @@
 import hashlib
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from zlib import crc32
 
 import msgspec
 import numpy as np
 
-from agent_server.config import Settings
 from agent_server.domain.command import Ack
 from agent_server.domain.decision import Decision, Outcome
 from agent_server.domain.gesture import IDLE
@@ -17,37 +15,23 @@ from agent_server.domain.inputs import SensorInput
 from agent_server.domain.label import Label
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.stamp import NS_PER_MS
-from agent_server.errors import AgentServerError, InvalidInput
+from agent_server.errors import AgentServerError
 from agent_server.protocol import messages as m
 from agent_server.qa.faults.base import Arrival, Fault
+from agent_server.qa.faulty import replay_arrivals
 from agent_server.qa.judge import Judgement, Reaction, judge
 from agent_server.qa.result import CaseResult, ForecastError, Moment, Status, Step, Stretch
+from agent_server.qa.setup import Setup
 from agent_server.qa.suite import Case
-from agent_server.qa.watch import Sight, Track, WatchedCore
+from agent_server.qa.watch import Sight, Track
 from agent_server.recording import topics
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.recording.records import SensorChanged
-from agent_server.scene.rulebook import Rules
-from agent_server.service.core import Core
-from agent_server.service.models import Models
-from agent_server.service.replay import replay, replay_stream
+from agent_server.service.replay import replay
 
 MAX_MOMENTS = 12
 _TOLD = (Outcome.COMMAND, Outcome.GATED, Outcome.BUSY, Outcome.NOTHING_TO_DO)
 """Outcomes whose reason is worth keeping."""
-
-
-@dataclass(frozen=True, slots=True)
-class Setup:
-    """What decides: settings, models and rules."""
-
-    settings: Settings
-    models: Models
-    rules: Rules
-
-    def core(self, session: str) -> WatchedCore:
-        """A fresh core."""
-        return WatchedCore(session, self.settings, self.rules, self.models)
 
 
 def examine(case: Case, setup: Setup, fault: Fault | None = None) -> CaseResult:
@@ -74,7 +58,7 @@ def _examine(case: Case, setup: Setup, fault: Fault | None) -> CaseResult:
     if fault is None:
         taken = [(_ms(d.end_ns), d) for d in replay(recording, core, setup.models)]
     else:
-        taken, refused = _under(fault, recording, core, setup.models)
+        taken, refused = _under(fault, recording, setup)
     steps = [_step(at_ms, decision) for at_ms, decision in taken]
     reactions = [Reaction(step.at_ms, step.reaction) for step in steps if step.reaction]
     duration_ms = _ms(recording.summary.end_ns)
@@ -100,22 +84,15 @@ def _examine(case: Case, setup: Setup, fault: Fault | None) -> CaseResult:
 
 
 def _under(
-    fault: Fault, recording: Recording, core: Core, models: Models
+    fault: Fault, recording: Recording, setup: Setup
 ) -> tuple[list[tuple[int, Decision]], int]:
     """Decisions with the time at which they come, and how many inputs were refused."""
-    core.set_face(_face(recording))
     inputs = [event for event in recording.events() if not isinstance(event, Ack)]
-    arrivals = [Arrival(_stamp(event), event) for event in inputs]
+    given = [Arrival(_stamp(event), event) for event in inputs]
     rng = np.random.default_rng(crc32(f"{recording.path.name}/{fault.name}".encode()))
-    taken: list[tuple[int, Decision]] = []
-    refused = 0
-    for arrival in sorted(fault.apply(arrivals, rng), key=lambda arrival: arrival.at_ns):
-        try:
-            decisions = replay_stream(core, models, (arrival.value,))
-            taken.extend((_ms(arrival.at_ns), decision) for decision in decisions)
-        except InvalidInput:
-            refused += 1
-    return taken, refused
+    arrivals = sorted(fault.apply(given, rng), key=lambda arrival: arrival.at_ns)
+    taken, refused = replay_arrivals(recording.metadata.session, setup, _face(recording), arrivals)
+    return [(_ms(at_ns), decision) for at_ns, decision in taken], refused
 
 
 def _face(recording: Recording) -> str:

@@ -14,11 +14,11 @@ from agent_server import __version__
 from agent_server.config import Settings
 from agent_server.errors import AgentServerError
 from agent_server.qa.faults.base import Fault
-from agent_server.qa.play import Setup, examine
+from agent_server.qa.play import examine
 from agent_server.qa.result import CaseResult, Run, Thresholds
+from agent_server.qa.setup import Setup, load_setup
 from agent_server.qa.suite import Case, Suite
 from agent_server.qa.totals import check_limits, fault_row, total
-from agent_server.transports.server import load_models, load_room
 
 _AHEAD = 4
 """Recordings that wait for each process: enough to keep it busy."""
@@ -90,16 +90,6 @@ def run_suite(
         )
         for variant, setup in enumerate(setups)
     ]
-
-
-def load_setup(settings: Settings) -> Setup:
-    """Load what decides.
-
-    Raises:
-        AgentServerError: If models or rules are missing or wrong.
-    """
-    models = load_models(settings)
-    return Setup(settings, models, load_room(settings, models))
 
 
 _Work = Callable[[Sequence[Task]], Iterator[tuple[int, CaseResult]]]

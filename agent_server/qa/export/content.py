@@ -10,7 +10,7 @@ from agent_server.domain.arrays import Float32
 from agent_server.domain.label import Label
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import InvalidInput
-from agent_server.qa.play import Setup
+from agent_server.qa.setup import Setup
 from agent_server.qa.watch import Sight
 from agent_server.recording.reader import open_recording
 from agent_server.service.replay import replay

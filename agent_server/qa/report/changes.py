@@ -31,10 +31,9 @@ def changes(comparison: Comparison) -> str:
 def _title(comparison: Comparison) -> str:
     if not comparison.differing and not comparison.broken and not comparison.mended:
         return f"All {comparison.decisions} decisions are as before"
-    share = comparison.differing / max(comparison.decisions, 1)
     return (
         f"{comparison.broken} expectations broke and {comparison.mended} were mended; "
-        f"{share:.1%} of {comparison.decisions} decisions differ"
+        f"{comparison.differing} of {comparison.decisions} decisions differ"
     )
 
 

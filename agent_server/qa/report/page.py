@@ -188,8 +188,8 @@ def _cases(run: Run) -> str:
     )
     legend = (
         '<p class="note">Triangles are reactions: green came as expected, red did not. Bodies are '
-        "drawn from the front: black was seen, blue is the forecast, and the broad grey body "
-        "behind it is what came.</p>"
+        "drawn from the front: five as they were seen, then the forecast in blue, with "
+        "what came as the broad grey body behind it.</p>"
     )
     return _section(
         "One by one",

@@ -48,7 +48,7 @@ def fault_table(faults: Sequence[FaultResult]) -> str:
     for row in faults:
         lost = row.right - clean.right
         style = "bad" if lost < 0 else ""
-        against = "" if row is clean else f"{lost:+d}".replace("-", "\u2212")
+        against = "" if row is clean else "0" if lost == 0 else f"{lost:+d}".replace("-", "\u2212")
         rate = f"{row.false / row.hours:.1f}" if row.hours else NONE
         delay = NONE if row.delay_p50_ms is None else f"{row.delay_p50_ms / 1000:.2f} s"
         rows.append(

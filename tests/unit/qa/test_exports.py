@@ -17,7 +17,7 @@ from agent_server.qa.export.csv_files import write_csv
 from agent_server.qa.export.foxglove import write_foxglove
 from agent_server.qa.export.npz import write_npz
 from agent_server.qa.export.rerun import write_rerun
-from agent_server.qa.run import load_setup
+from agent_server.qa.setup import load_setup
 from agent_server.qa.tools.label_table import read_label_table
 from agent_server.recording.reader import open_recording
 

@@ -9,7 +9,7 @@ from agent_server.domain.command import Ack
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.domain.stamp import NS_PER_S, to_ns
 from agent_server.errors import InvalidInput, RecordingError
-from agent_server.qa.run import load_setup
+from agent_server.qa.setup import load_setup
 from agent_server.qa.tools.annotate import annotate
 from agent_server.qa.tools.anonymise import anonymise
 from agent_server.qa.tools.cut import cut, decision_time
