@@ -49,8 +49,9 @@ export class PlayPanel {
     this.#recordings.append(h("option", { value: "" }, "Play a recording\u2026"));
     root.append(
       gestures,
+      h("div", { class: "play-side" }, this.#recordings),
       moods,
-      h("div", { class: "play-side" }, this.#words, this.#instead, this.#stop, this.#recordings),
+      h("div", { class: "play-side" }, this.#words, this.#instead, this.#stop),
     );
   }
 
