@@ -15,10 +15,16 @@ def recover(
     damaged: Annotated[
         Path, typer.Argument(metavar="IN", help="A truncated or damaged recording.")
     ],
-    output: Annotated[Path, typer.Argument(metavar="OUT", help="File to create.")],
+    output: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="[OUT]", help="File to create; else IN with .recovered in its name."
+        ),
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Save what is whole of a recording, and say what was lost."""
+    output = output or damaged.with_suffix(f".recovered{damaged.suffix}")
     report = recover_recording(damaged, output)
     if as_json:
         print(msgspec.json.encode(report).decode())
@@ -31,7 +37,7 @@ def recover(
     if report.damaged_records:
         console.print(f"lost: {report.damaged_records} parts that cannot be read")
     if report.missing_records:
-        console.print(f"lost: {report.missing_records} records, as gaps in their numbers show")
+        console.print(f"lost: {report.missing_records} records that are known to have been there")
     if not report.finished:
         console.print(
             f"the writer did not come to an end: {report.lost_bytes} bytes make no whole record, "
