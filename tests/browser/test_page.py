@@ -1,8 +1,10 @@
 """The page in a real browser, on a real server, with the shipped models and a recorded stream."""
 
 import asyncio
+import gzip
 from pathlib import Path
 
+from agent_server import assets
 from agent_server.client.once import send_paced
 from agent_server.recording.reader import open_recording
 from agent_server.transports.server import load_models
@@ -80,3 +82,11 @@ async def test_a_connection_that_is_lost_comes_back_by_itself():
         await until(page, lambda s: s["connection"]["phase"] != "live")
         state = await until(page, lambda s: s["connection"]["phase"] == "live")
         assert state["connection"]["fault"] is None
+
+
+def test_the_page_is_light_until_the_camera_is_switched_on():
+    page = assets.page()
+    scripts = [path for path in page.glob("assets/*") if path.suffix in (".js", ".css")]
+    first = [page / "index.html", page / "human.glb", *scripts]
+    assert len(first) > 5
+    assert sum(len(gzip.compress(path.read_bytes())) for path in first) < 3_000_000

@@ -95,8 +95,10 @@ export class App {
     );
     this.#cameraPanel.connect(this.#camera);
     this.#cameraPanel.render(this.#camera, browserHost.now());
-    const clips = clipsOf(place.standInUrl, STAND_IN_SEED, (...request) => fetch(...request));
-    const recordings = recordingsOf(place.streamsUrl, (...request) => fetch(...request));
+    const headers = bearing(place.token);
+    const ask: typeof fetch = (input, init) => fetch(input, { ...init, headers });
+    const clips = clipsOf(place.standInUrl, STAND_IN_SEED, ask);
+    const recordings = recordingsOf(place.streamsUrl, ask);
     const renderPlay = (): void => this.#play.render(this.#standIn.state, this.#recorded.state);
     this.#recorded = new Recorded(place, client, browserHost, recordings, renderPlay);
     this.#standIn = new StandIn(place, client, browserHost, clips, renderPlay);
@@ -174,8 +176,7 @@ export class App {
     const { sessionUrl, token } = this.#place;
     const url = new URL(`objects/${encodeURIComponent(object)}`, sessionUrl);
     url.searchParams.set("state", next);
-    const headers: HeadersInit = token === null ? {} : { authorization: `Bearer ${token}` };
-    void fetch(url, { method: "PUT", headers }).catch(() => {
+    void fetch(url, { method: "PUT", headers: bearing(token) }).catch(() => {
       // The connection's own notice says what is wrong.
     });
   }
@@ -328,4 +329,9 @@ export class App {
     }
     this.#drawn.revision = -1;
   }
+}
+
+/** The header that shows the page's token, where it has one. */
+function bearing(token: string | null): HeadersInit {
+  return token === null ? {} : { authorization: `Bearer ${token}` };
 }
