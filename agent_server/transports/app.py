@@ -20,7 +20,7 @@ from agent_server.service.auth import OPEN, Access, NotAdmitted
 from agent_server.service.hub import Hub
 from agent_server.service.swap import Swapper
 from agent_server.transports.admin import ADMIN_PATHS, admin_router
-from agent_server.transports.bundles import bundle_router
+from agent_server.transports.bundles import PAGE_FILES, bundle_router
 from agent_server.transports.guard import Guard, admitted, refused, require
 from agent_server.transports.people import people_router
 from agent_server.transports.websocket import websocket_router
@@ -102,7 +102,7 @@ def create_app(
     app = FastAPI(
         title="agent-server", version=__version__, lifespan=lifespan, docs_url=None, redoc_url=None
     )
-    open_paths = (*OPEN_PATHS, *ADMIN_PATHS, *_page_files(page))
+    open_paths = (*OPEN_PATHS, *PAGE_FILES, *ADMIN_PATHS, *_page_files(page))
     app.add_middleware(Guard, access=access, settings=hub.settings, open_paths=open_paths)
     if origins := hub.settings.access.origins:
         app.add_middleware(

@@ -11,6 +11,10 @@ from agent_server.transports.guard import require
 
 PAGE_NETWORKS = ("face_detector", "face_mesh")
 """Bundles that the page runs."""
+PAGE_FILES = tuple(
+    f"/v1/models/{name}/{file}" for name in PAGE_NETWORKS for file in (MANIFEST_FILE, MODEL_FILE)
+)
+"""Where they are; like the page's other files they need no token."""
 FOR_GOOD = "public, max-age=31536000, immutable"
 
 
