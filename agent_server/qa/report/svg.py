@@ -137,7 +137,7 @@ def ticks(low: float, high: float, about: int = 5) -> list[float]:
     """Round values within a range, about so many."""
     raw = (high - low) / about
     size = 10.0 ** np.floor(np.log10(raw))
-    step = next(m * size for m in (1, 2, 2.5, 5, 10) if m * size >= raw * 0.999)
+    step = next(m * size for m in (1, 2, 2.5, 5, 10) if m * size >= raw * 0.7)
     first = np.ceil(low / step - 1e-9)
     # Adding 0 makes a negative zero a plain one.
     return [round(float(n * step), 10) + 0.0 for n in np.arange(first, high / step + 1e-9)]
