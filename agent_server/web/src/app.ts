@@ -21,6 +21,7 @@ import { Recorded, recordingsOf, type RecordedState } from "./play/recorded.ts";
 import { StandIn, type StandInState } from "./play/stand_in.ts";
 import { jsonCodec } from "./protocol/codec.ts";
 import { Actor } from "./room/actor.ts";
+import { enter, hasHeadset } from "./room/headset.ts";
 import type { RoomView } from "./room/view.ts";
 import { History } from "./state/history.ts";
 import type { Row } from "./state/log.ts";
@@ -70,6 +71,8 @@ export class App {
   readonly #inspector = new Inspector(byId("inspector"), () => this.#closeInspector());
   readonly #notice = new Notice(byId("notice"), () => this.#connectAgain());
   readonly #spoken = byId("spoken");
+  /** Whether a headset draws the room, and not the page. */
+  isWorn = false;
   #directory: Directory = { kind: "unknown" };
   #opened: number | null = null;
   #now: number;
@@ -161,6 +164,9 @@ export class App {
     this.#actLine.connect(actor, (isOn) => room.setSound(isOn));
     this.#actLine.render(this.#roomPhase, actor);
     actor.start();
+    void hasHeadset().then((isThere) => {
+      if (isThere) this.#actLine.offerHeadset(() => void this.#wear(room));
+    });
   }
 
   /** There is no room to see. */
@@ -289,6 +295,19 @@ export class App {
     this.#cameraPanel.render(this.#camera, browserHost.now());
     const isHeld = body !== null && body.gesture !== "idle" && body.outcome !== "unsure";
     setText(this.#spoken, isHeld ? sentenceCase(body.gesture) : "");
+  }
+
+  async #wear(room: RoomView): Promise<void> {
+    if (this.isWorn) return;
+    this.isWorn = true;
+    const pass = (): void => this.advance(performance.now());
+    try {
+      await enter(room, this.#place, this.#client, browserHost, pass);
+    } catch (error) {
+      console.warn("the headset did not come in:", error);
+    } finally {
+      this.isWorn = false;
+    }
   }
 
   #resizeBody(): void {

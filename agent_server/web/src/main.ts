@@ -109,8 +109,10 @@ if (place.isStepped) {
     recorded: () => app.recorded(),
   };
   const frame = (): void => {
-    app.advance(performance.now());
-    app.draw();
+    if (!app.isWorn) {
+      app.advance(performance.now());
+      app.draw();
+    }
     requestAnimationFrame(frame);
   };
   requestAnimationFrame(frame);

@@ -31,7 +31,7 @@ beforeEach(() => {
 
 function joined(takesOver = false): SensorLink {
   const client = { name: "page", version: "1.2", token: "secret" };
-  const link = new SensorLink(PLACE, client, takesOver, host, {
+  const link = new SensorLink(PLACE, client, "expected", takesOver, host, {
     onState: (state) => states.push(state),
     onCalibration: (calibration) => calibrations.push(calibration),
     onRefusal: (error) => refusals.push(error),

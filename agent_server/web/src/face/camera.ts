@@ -139,7 +139,7 @@ export class Camera {
   // ------------------------------------------------------------------ the session
 
   #join(turn: number, takesOver: boolean): void {
-    this.#link = new SensorLink(this.#place, this.#client, takesOver, this.#host, {
+    this.#link = new SensorLink(this.#place, this.#client, "expected", takesOver, this.#host, {
       onState: (link) => {
         if (turn !== this.#turn) return;
         this.#enter({ link });

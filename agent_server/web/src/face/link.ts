@@ -1,10 +1,10 @@
-/** The camera's place in the session: kept while nobody else sends the face, given up otherwise. */
+/** A sensor's place in the session: kept while nobody else sends the same, given up otherwise. */
 
 import { Connection, type Client } from "../net/connection.ts";
 import type { Host } from "../net/host.ts";
 import type { Place } from "../place.ts";
 import { jsonCodec, type Outgoing } from "../protocol/codec.ts";
-import type { CalibrationState, ErrorMessage } from "../protocol/messages.ts";
+import type { CalibrationState, ErrorMessage, FaceKind } from "../protocol/messages.ts";
 
 export type LinkState =
   | "opening"
@@ -32,10 +32,14 @@ export class SensorLink {
   readonly #connection: Connection;
   readonly #events: LinkEvents;
 
-  /** @param takesOver Whether to push aside a sensor that sends the face already. */
+  /**
+   * @param face What the sensor has of the face.
+   * @param takesOver Whether to push aside a sensor that sends the same already.
+   */
   constructor(
     { sensorUrl, session }: Pick<Place, "sensorUrl" | "session">,
     client: Client,
+    face: FaceKind,
     takesOver: boolean,
     host: Host,
     events: LinkEvents,
@@ -48,7 +52,7 @@ export class SensorLink {
         role: "sensor",
         client,
         codec: jsonCodec,
-        greeting: () => ({ face: "expected", take_over: takesOver }),
+        greeting: () => ({ face, take_over: takesOver }),
       },
       host,
       {

@@ -8,10 +8,18 @@ export type RoomPhase = "loading" | "ready" | "failed" | "no_webgl";
 export class ActLine {
   readonly #words = h("p", { class: "act-words", role: "status" });
   readonly #take = h("button", { type: "button", class: "quiet-button" }, "Act here");
+  readonly #headset = h("button", { type: "button", class: "quiet-button" }, "Enter with the headset");
   readonly #sound = h("button", { type: "button", class: "quiet-button", "aria-pressed": "false" }, "Sound");
 
   constructor(root: HTMLElement) {
-    root.append(this.#words, this.#take, this.#sound);
+    this.#headset.hidden = true;
+    root.append(this.#words, this.#take, this.#headset, this.#sound);
+  }
+
+  /** Offer the way in with a headset. */
+  offerHeadset(enter: () => void): void {
+    this.#headset.hidden = false;
+    this.#headset.addEventListener("click", enter);
   }
 
   connect(actor: Actor, setSound: (isOn: boolean) => void): void {

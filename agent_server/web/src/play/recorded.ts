@@ -8,6 +8,7 @@ import type { Client } from "../net/connection.ts";
 import type { Host } from "../net/host.ts";
 import type { Place } from "../place.ts";
 import type { Outgoing } from "../protocol/codec.ts";
+import type { FaceKind } from "../protocol/messages.ts";
 
 /** What was sent, each message with its time from the first, in milliseconds. */
 export type Recording = readonly { readonly at_ms: number; readonly message: Outgoing }[];
@@ -43,6 +44,13 @@ export function recordingsOf(url: string, fetcher: typeof fetch): Recordings {
   };
 }
 
+/** What a recording has of a face. */
+function faceOf(recording: Recording): FaceKind {
+  const types = new Set<string>(recording.map(({ message }) => message.type));
+  if (["affect", "face", "blendshapes"].some((type) => types.has(type))) return "expected";
+  return types.has("gaze") ? "gaze" : "none";
+}
+
 export class Recorded {
   state = OFF;
 
@@ -53,6 +61,7 @@ export class Recorded {
   readonly #onChange: () => void;
   #link: SensorLink | null = null;
   #cancelTimer: () => void = () => {};
+  #turn = 0;
 
   constructor(
     place: Place,
@@ -75,33 +84,35 @@ export class Recorded {
    */
   async start(name: string, takesOver = false): Promise<void> {
     this.stop();
-    let recording: Recording;
+    const turn = this.#turn;
     this.#enter({ phase: "loading", name });
-    const link: SensorLink = new SensorLink(this.#place, this.#client, takesOver, this.#host, {
+    let recording: Recording;
+    try {
+      recording = await this.#recordings.open(name);
+    } catch (error) {
+      if (turn !== this.#turn) return;
+      this.stop();
+      const fault = error instanceof Error ? error.message : `${error}`;
+      this.#enter({ phase: "failed", name, fault });
+      return;
+    }
+    if (turn !== this.#turn) return;
+    const face = faceOf(recording);
+    this.#link = new SensorLink(this.#place, this.#client, face, takesOver, this.#host, {
       onState: (state) => {
         this.#enter({ link: state });
-        if (state === "live" && this.state.phase === "loading") {
-          this.#enter({ phase: "playing" });
-          this.#send(recording, 0, this.#host.now());
-        }
+        if (state !== "live" || this.state.phase !== "loading") return;
+        this.#enter({ phase: "playing" });
+        this.#send(recording, 0, this.#host.now());
       },
       onCalibration: () => {},
       onRefusal: ({ message }) => this.#enter({ fault: message }),
     });
-    this.#link = link;
-    try {
-      recording = await this.#recordings.open(name);
-    } catch (error) {
-      if (this.#link !== link) return;
-      this.stop();
-      this.#enter({ phase: "failed", name, fault: error instanceof Error ? error.message : `${error}` });
-      return;
-    }
-    if (this.#link !== link) return;
-    link.start();
+    this.#link.start();
   }
 
   stop(): void {
+    this.#turn += 1;
     this.#cancelTimer();
     this.#link?.close();
     this.#link = null;

@@ -66,7 +66,7 @@ export class StandIn {
   async start(takesOver = false): Promise<void> {
     this.stop();
     this.#enter({ phase: "loading", fault: null });
-    const link = new SensorLink(this.#place, this.#client, takesOver, this.#host, {
+    const link = new SensorLink(this.#place, this.#client, "expected", takesOver, this.#host, {
       onState: (state) => this.#enter({ link: state }),
       onCalibration: () => {},
       onRefusal: ({ message }) => this.#enter({ fault: message }),

@@ -1,7 +1,9 @@
 /** The room on a canvas: scenery, light and the agent, stepped and drawn from outside. */
 
 import {
+  type Matrix4,
   Mesh,
+  type Object3D,
   PCFShadowMap,
   PerspectiveCamera,
   Raycaster,
@@ -27,6 +29,7 @@ export interface RoomViewOptions {
 }
 
 const MOVABLE: ReadonlySet<string> = new Set<MovableName>(["window", "curtain", "hifi", "cigarette"]);
+const HEAD = "mixamorigHead";
 /** A picture narrower than this, width to height, shows less of the sides and more height; one that
  * is wider comes nearer. */
 const FULL_ASPECT = 1.6;
@@ -58,6 +61,7 @@ export class RoomView {
   #pixelRatio: number;
   #watched = { pictures: 0, ms: 0 };
   #agent: Agent | null = null;
+  #head: Object3D | null = null;
 
   /**
    * @param element The box that the canvas fills.
@@ -111,6 +115,7 @@ export class RoomView {
     for (let i = 0; i < 60; i++) agent.step(1000 / 60);
     this.#scene.add(root);
     this.#agent = agent;
+    this.#head = root.getObjectByName(HEAD) ?? null;
   }
 
   /** Draw the first picture, which would stop the page for as long as its shaders take. */
@@ -153,6 +158,43 @@ export class RoomView {
 
   cut(): void {
     this.#agent?.cut();
+  }
+
+  /**
+   * Draw for a headset until its session ends: the wearer stands where the picture is seen from.
+   *
+   * @param onFrame Called before each picture.
+   */
+  async wear(session: XRSession, onFrame: () => void): Promise<void> {
+    const { xr } = this.#renderer;
+    xr.enabled = true;
+    xr.setReferenceSpaceType("local-floor");
+    session.addEventListener("end", () => {
+      this.#renderer.setAnimationLoop(null);
+      xr.enabled = false;
+      this.#agent?.lookAt(VIEW.from);
+    });
+    await xr.setSession(session);
+    const [x, , z] = VIEW.from;
+    const here = xr.getReferenceSpace()?.getOffsetReferenceSpace(new XRRigidTransform({ x: -x, z: -z }));
+    if (here !== undefined) xr.setReferenceSpace(here);
+    const eye = new Vector3();
+    this.#renderer.setAnimationLoop(() => {
+      onFrame();
+      this.draw();
+      const { x: eyeX, y: eyeY, z: eyeZ } = eye.setFromMatrixPosition(this.#camera.matrixWorld);
+      this.#agent?.lookAt([eyeX, eyeY, eyeZ]);
+    });
+  }
+
+  /** Where the room is seen from, as of the last picture: with a headset the wearer's head. */
+  get eye(): Matrix4 {
+    return this.#camera.matrixWorld;
+  }
+
+  /** Where the agent's head is in the room, as of the last picture. */
+  headOfAgent(head: Vector3): Vector3 {
+    return this.#head === null ? head : head.setFromMatrixPosition(this.#head.matrixWorld);
   }
 
   setSound(isOn: boolean): void {
