@@ -38,7 +38,12 @@ from tests.support.live import live, next_of
 SECRET = "for tests alone, and long enough for it"  # noqa: S105
 
 
-def copied(folder, name, version=None):
+@pytest.fixture(scope="module")
+def shipped():
+    return load_models()
+
+
+def copied(folder, name):
     """A bundle of another name, made from the shipped predictor."""
     shutil.copytree(assets.bundles() / "ma_wgan_server", folder / name)
     manifest = read_manifest(assets.bundles() / "ma_wgan_server")
@@ -60,9 +65,9 @@ async def names_of_next(monitor):
     return set((await next_of(monitor, m.DecisionMessage)).decision.models)
 
 
-async def test_a_good_bundle_takes_over_and_no_session_notices(tmp_path):
+async def test_a_good_bundle_takes_over_and_no_session_notices(shipped, tmp_path):
     copied(tmp_path, "newer")
-    settings, models = swapping(tmp_path), load_models()
+    settings, models = swapping(tmp_path), shipped
     recordings = tmp_path / "recordings"
     recordings.mkdir()
     journal = partial(
@@ -114,7 +119,7 @@ async def test_a_good_bundle_takes_over_and_no_session_notices(tmp_path):
         ("classifier", 422, "can classify"),
     ],
 )
-async def test_a_bundle_that_is_not_good_changes_nothing(tmp_path, path, status, said):
+async def test_a_bundle_that_is_not_good_changes_nothing(shipped, tmp_path, path, status, said):
     folder = tmp_path / "bundles"
     if path == "altered":
         model = copied(folder, path) / "model.onnx"
@@ -125,7 +130,7 @@ async def test_a_bundle_that_is_not_good_changes_nothing(tmp_path, path, status,
         spoil_golden(other, folder / path)
     elif path == "classifier":
         shutil.copytree(assets.bundles() / "interformer_server", folder / path)
-    models = load_models()
+    models = shipped
     async with (
         live(models, swapping(folder)) as server,
         httpx.AsyncClient(base_url=server.url) as http,
