@@ -5,7 +5,7 @@ import sys
 import typer
 
 from agent_server.errors import AgentServerError
-from models.cli import evaluate, export, gestures, train
+from models.cli import evaluate, export, generate, gestures, train
 
 app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 for name, group in (
@@ -13,6 +13,7 @@ for name, group in (
     ("export", export),
     ("evaluate", evaluate),
     ("gestures", gestures),
+    ("generate", generate),
 ):
     app.add_typer(group.app, name=name)
 for command in (evaluate.ablate, evaluate.latency):

@@ -80,7 +80,7 @@ class Court:
         found, apart, errors = [], [], []
         for seed in range(DRAWS):
             reaction, lengths = react(self.test, seed)
-            made = self.test.with_reactions(_as_long(reaction, self.test), self.test.lengths)
+            made = self.test.with_reactions(as_long(reaction, self.test), self.test.lengths)
             found += [self._judged(judge, made) for judge in self.judges]
             apart.append((lengths - self.test.lengths).abs().float().mean())
             errors.append(position_error_mm(made, self.test))
@@ -131,8 +131,8 @@ def position_error_mm(made: Pairs, true: Pairs) -> float:
     return 1000 * float((off * true.mask).sum() / true.mask.sum())
 
 
-def _as_long(reaction: torch.Tensor, true: Pairs) -> torch.Tensor:
-    """Reactions with as many frames as the true ones; one that ended keeps its last pose."""
+def as_long(reaction: torch.Tensor, true: Pairs) -> torch.Tensor:
+    """Reactions (B, T, 15, 3) with as many frames as the true ones, by repeating the last pose."""
     frames = true.reaction.shape[1]
     missing = max(frames - reaction.shape[1], 0)
     return torch.cat([reaction, reaction[:, -1:].expand(-1, missing, -1, -1)], dim=1)[:, :frames]

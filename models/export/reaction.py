@@ -128,7 +128,7 @@ def write_graphs(network: Generator, folder: Path) -> None:
         (action, lengths),
         folder / ENCODER_FILE,
         ENCODE_INPUTS,
-        ("tokens", "bias", "seen"),
+        ("tokens", "bias", "seen", "probabilities"),
         ({0: batch, 1: action_frames}, {0: batch}),
     )
     with torch.no_grad():
@@ -140,6 +140,7 @@ def write_graphs(network: Generator, folder: Path) -> None:
             *poses,
             torch.tensor([written]),
             torch.randn(count, config.latent),
+            read.kind,
             torch.randn(*read.seen.shape[:4], written, read.seen.shape[5]),
             action[:, 0],
             read.tokens[:, 0],
@@ -150,7 +151,7 @@ def write_graphs(network: Generator, folder: Path) -> None:
         STEP_INPUTS,
         ("next_pose", "stop", "new_past"),
         (
-            *({0: batch}, {0: batch}, {0: batch}, {}, {0: batch}),
+            *({0: batch}, {0: batch}, {0: batch}, {}, {0: batch}, {0: batch}),
             {2: batch, 4: past_frames},
             *({0: batch}, {0: batch}),
             {0: batch, 3: action_frames},

@@ -17,6 +17,7 @@ class NetworkConfig:
         heads: Heads of the temporal attention.
         hidden: Units of the dense network of a layer.
         dropout: Share of units left out in training.
+        classes: Kinds of interaction that the encoder tells apart.
         latent: Size of the noise; other noise, another reaction.
         frames: Longest segment: a longer action is reacted to piece by piece.
         spatial: Attend to joints beside moments.
@@ -29,8 +30,9 @@ class NetworkConfig:
     layers: int = 2
     heads: int = 3
     hidden: int = 180
-    dropout: float = 0.1
-    latent: int = 8
+    dropout: float = 0.05
+    classes: int = 6
+    latent: int = 4
     frames: int = 64
     spatial: bool = True
     adjacency: bool = True
@@ -73,6 +75,7 @@ class TrainConfig:
         first: Weight of the error of the first step.
         bones: Weight of the errors of bone lengths.
         stop: Weight of the errors of the end.
+        kind: Weight of the errors of the kind that the encoder takes an action for.
         divergence: Weight that holds the noise to a normal distribution.
         ema: Decay of the averaged weights.
         validate_every: Updates between two validations.
@@ -80,11 +83,11 @@ class TrainConfig:
 
     network: NetworkConfig = NetworkConfig()
     data: str = "sbu"
-    steps: int = 400
-    batch: int = 12
-    learning_rate: float = 3e-3
+    steps: int = 600
+    batch: int = 16
+    learning_rate: float = 2e-3
     weight_decay: float = 0.02
-    uses: int = 3
+    uses: int = 2
     noise_m: float = 0.01
     scale: float = 0.1
     swap: bool = True
@@ -92,23 +95,25 @@ class TrainConfig:
     first: float = 1.0
     bones: float = 1.0
     stop: float = 0.004
+    kind: float = 0.01
     divergence: float = 0.001
     ema: float = 0.98
-    validate_every: int = 200
+    validate_every: int = 100
 
     def __post_init__(self) -> None:
         if self.uses < 1:
             raise ConfigError(f"uses is {self.uses}: a batch is used once at least")
 
 
+K3HI = NetworkConfig(classes=8)
 PAPER = NetworkConfig(features=1, layers=6, heads=3, hidden=2048)
 """The published shape: tokens of 45 numbers, six layers, three heads."""
 
 CONFIGS: dict[str, TrainConfig] = {
     "sbu": TrainConfig(),
-    "k3hi": TrainConfig(data="k3hi"),
+    "k3hi": TrainConfig(network=K3HI, data="k3hi"),
     "paper": TrainConfig(network=PAPER),
-    "paper_k3hi": TrainConfig(network=PAPER, data="k3hi"),
+    "paper_k3hi": TrainConfig(network=replace(PAPER, classes=8), data="k3hi"),
 }
 
 ABLATIONS = {

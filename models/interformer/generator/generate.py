@@ -23,11 +23,13 @@ class Read(NamedTuple):
         tokens: The encoder's, (B, S, D).
         bias: Hides padding, (B, 1, 1, S).
         seen: Keys and values for the decoder's layers, (L, 2, B, H, S, D / H).
+        kind: Probabilities of the kinds of interaction, (B, classes).
     """
 
     tokens: torch.Tensor
     bias: torch.Tensor
     seen: torch.Tensor
+    kind: torch.Tensor
 
 
 class Told(NamedTuple):
@@ -55,7 +57,7 @@ class Encode(nn.Module):
         """Read actions."""
         memory = self.network.encode(action, lengths)
         seen = torch.stack([torch.stack(layer) for layer in memory.seen])
-        return Read(memory.tokens, memory.bias, seen)
+        return Read(memory.tokens, memory.bias, seen, torch.softmax(memory.kind, dim=-1))
 
 
 class Step(nn.Module):
@@ -72,6 +74,7 @@ class Step(nn.Module):
         before: torch.Tensor,
         at: torch.Tensor,
         noise: torch.Tensor,
+        kind: torch.Tensor,
         past: torch.Tensor,
         action_pose: torch.Tensor,
         action_token: torch.Tensor,
@@ -86,6 +89,7 @@ class Step(nn.Module):
             before: The one before; the same for the first.
             at: Number of this frame, int64, (1,).
             noise: (B, latent).
+            kind: Shares of the kinds of interaction, (B, classes).
             past: Of the frames before this one, (L, 2, B, H, T, D / H).
             action_pose: Of the action now, (B, J, 3).
             action_token: The encoder's, (B, D).
@@ -95,7 +99,7 @@ class Step(nn.Module):
         network = self.network
         reaction = pose[:, None]
         x = network.write(first[:, None], reaction, reaction - before[:, None])
-        x = x + network.write.times[at] + network.noise(noise)[:, None]
+        x = x + network.write.times[at] + network.told(kind, noise)
         near = nearness(reaction, action_pose[:, None]) if network.config.distance else None
         kept = []
         for place, layer in enumerate(network.decoder_layers):
@@ -122,6 +126,7 @@ class Core(Protocol):
         before: torch.Tensor,
         at: torch.Tensor,
         noise: torch.Tensor,
+        kind: torch.Tensor,
         past: torch.Tensor,
         action_pose: torch.Tensor,
         action_token: torch.Tensor,
@@ -180,6 +185,7 @@ def generate(
             poses[max(at - 1, 0)],
             torch.tensor([at]),
             noise,
+            read.kind,
             past,
             action[rows, beside],
             read.tokens[rows, beside],

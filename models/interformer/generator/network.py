@@ -6,7 +6,8 @@ attention between joints runs beside attention between moments; within one perso
 by the skeleton, between two people it is raised by how near the joints are.
 Where this differs: layers are normalised before each part, a token also holds the last step,
 the decoder says how far each joint is from where it began, which cannot drift, the end is a
-probability and no pose, and noise makes several reactions to one action.
+probability and no pose, noise makes several reactions to one action, and the encoder also says
+what kind of interaction it sees, which the decoder is told.
 """
 
 import math
@@ -161,12 +162,14 @@ class Memory(NamedTuple):
         tokens: (B, S, D).
         bias: Hides padding, (B, 1, 1, S).
         seen: What each decoder layer may ask.
+        kind: Logits of the kinds of interaction, (B, classes).
     """
 
     action: torch.Tensor
     tokens: torch.Tensor
     bias: torch.Tensor
     seen: tuple[Seen, ...]
+    kind: torch.Tensor
 
 
 class Generator(nn.Module):
@@ -179,12 +182,16 @@ class Generator(nn.Module):
         self.ending = nn.Parameter(torch.randn(config.width) * 0.1)
         self.encoder = nn.ModuleList(EncoderLayer(config) for _ in range(config.layers))
         self.encoder_norm = nn.LayerNorm(config.width)
+        self.name = nn.Linear(config.width, config.classes)
         self.write = Embedding(config)
+        self.named = nn.Linear(config.classes, config.width)
         self.noise = nn.Linear(config.latent, config.width)
         self.decoder = nn.ModuleList(DecoderLayer(config) for _ in range(config.layers))
         self.norm = nn.LayerNorm(config.width)
         self.way = nn.Linear(config.width, 3 * config.joints)
         self.stop = nn.Linear(config.width, 1)
+        # At first all reactions are one, and stand still.
+        nn.init.normal_(self.noise.weight, std=0.02)
         nn.init.zeros_(self.way.weight)
         nn.init.zeros_(self.way.bias)
 
@@ -204,18 +211,28 @@ class Generator(nn.Module):
             x = layer(x, bias)
         tokens = self.encoder_norm(x)
         seen = tuple(layer.other_temporal.see(tokens) for layer in self.decoder_layers)
-        return Memory(action, tokens, bias, seen)
+        shares = torch.softmax(bias[:, 0, 0], dim=-1)  # every frame of the action alike
+        kind = self.name((shares[:, None] @ tokens)[:, 0])
+        return Memory(action, tokens, bias, seen, kind)
 
-    def decode(self, reaction: torch.Tensor, noise: torch.Tensor, memory: Memory) -> Written:
+    def told(self, kind: torch.Tensor, noise: torch.Tensor) -> torch.Tensor:
+        """Shares of kinds (B, classes) and noise (B, latent) -> for every token, (B, 1, D)."""
+        both: torch.Tensor = self.named(kind) + self.noise(noise)
+        return both[:, None]
+
+    def decode(
+        self, reaction: torch.Tensor, noise: torch.Tensor, kind: torch.Tensor, memory: Memory
+    ) -> Written:
         """What follows each frame of reactions; no frame sees a later one of its reaction.
 
         Args:
             reaction: (B, T, J, 3), metres, at most as long as the actions.
             noise: (B, latent).
+            kind: Shares of the kinds of interaction, (B, classes).
             memory: The actions.
         """
         frames = reaction.shape[1]
-        x = self.write.timed(reaction) + self.noise(noise)[:, None]
+        x = self.write.timed(reaction) + self.told(kind, noise)
         later = torch.ones(frames, frames, device=x.device).triu(1) * NEVER
         beside = memory.tokens[:, :frames]
         near = nearness(reaction, memory.action[:, :frames]) if self.config.distance else None

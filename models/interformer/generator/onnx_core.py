@@ -11,7 +11,7 @@ from models.ops.session import open_session
 ENCODER_FILE = "encoder.onnx"
 ENCODE_INPUTS = ("action", "lengths")
 STEP_INPUTS = (
-    *("first", "pose", "before", "at", "noise", "past"),
+    *("first", "pose", "before", "at", "noise", "kind", "past"),
     *("action_pose", "action_token", "action_bias", "action_seen"),
 )
 
@@ -50,6 +50,7 @@ class OnnxCore:
         before: torch.Tensor,
         at: torch.Tensor,
         noise: torch.Tensor,
+        kind: torch.Tensor,
         past: torch.Tensor,
         action_pose: torch.Tensor,
         action_token: torch.Tensor,
@@ -58,7 +59,7 @@ class OnnxCore:
     ) -> Told:
         """Give the next pose; see :class:`models.interformer.generator.generate.Step`."""
         given = (
-            *(first, pose, before, at, noise, past),
+            *(first, pose, before, at, noise, kind, past),
             *(action_pose, action_token, action_bias, action_seen),
         )
         values = zip(STEP_INPUTS, given, strict=True)

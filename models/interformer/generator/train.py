@@ -12,7 +12,7 @@ from models.data.interactions import INTERACTION_SETS, Pairs, vary
 from models.data.layouts import KINECT15
 from models.interformer.generator.config import NetworkConfig, TrainConfig
 from models.interformer.generator.generate import TorchCore, generate
-from models.interformer.generator.network import Generator, Written, steps_of
+from models.interformer.generator.network import Generator, Memory, Written, steps_of
 from models.training.fit import fit, training_device
 from models.training.run import Run, read_best, read_info
 from models.training.schedule import warm_cosine
@@ -29,7 +29,7 @@ class Posterior(nn.Module):
 
     def __init__(self, config: NetworkConfig, width: int = 64) -> None:
         super().__init__()
-        self.gru = nn.GRU(6 * config.joints, width, batch_first=True)
+        self.each = nn.Sequential(nn.Linear(6 * config.joints, width), nn.ReLU())
         self.out = nn.Linear(width, 2 * config.latent)
 
     def forward(
@@ -37,9 +37,9 @@ class Posterior(nn.Module):
     ) -> tuple[torch.Tensor, torch.Tensor]:
         """(B, T, J, 3), (B, T) -> mean and log-variance, each (B, latent)."""
         both = torch.cat([reaction - reaction[:, :1], 8 * steps_of(reaction)], dim=-1)
-        states, _ = self.gru(both.flatten(2))
         share = mask / mask.sum(1, keepdim=True)
-        mean, logvar = self.out((states * share[..., None]).sum(1)).chunk(2, dim=-1)
+        pooled = (self.each(both.flatten(2)) * share[..., None]).sum(1)
+        mean, logvar = self.out(pooled).chunk(2, dim=-1)
         return mean, logvar
 
 
@@ -88,15 +88,24 @@ class Learner(nn.Module):
         noise = mean + white * (0.5 * logvar).exp()
         memory = self.network.encode(pairs.action, pairs.lengths)
         given = self._given(reaction, generator)
-        written = self.network.decode(given, noise, memory)
+        kind = self._kind(pairs, memory, generator)
+        written = self.network.decode(given, noise, kind, memory)
         self.made = torch.cat([reaction[:, :1], written.pose[:, :-1].detach()], dim=1)
         terms = reaction_terms(written, pairs)
+        terms["kind"] = F.cross_entropy(memory.kind, pairs.labels, label_smoothing=0.05)
         terms["divergence"] = 0.5 * (mean.square() + logvar.exp() - 1 - logvar).sum(-1).mean()
         loss = terms["position"] + sum(
             getattr(config, name) * value for name, value in terms.items() if name != "position"
         )
         self.updater.apply(loss)
         return {name: float(value.detach()) for name, value in terms.items()}
+
+    def _kind(self, pairs: Pairs, memory: Memory, generator: torch.Generator) -> torch.Tensor:
+        """What the decoder is told of the kind: half of the time the truth, else the encoder's."""
+        true = F.one_hot(pairs.labels, self.config.network.classes).float()
+        found = torch.softmax(memory.kind.detach(), dim=-1)
+        tells = torch.rand(len(pairs), 1, generator=generator) < 0.5
+        return torch.where(tells.to(self.device), true, found)
 
     def _given(self, reaction: torch.Tensor, generator: torch.Generator) -> torch.Tensor:
         """What the decoder is given: true poses, those it made before, and all a little off.
