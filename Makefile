@@ -71,7 +71,8 @@ audit: $(STAMP)
 	$(PYTHON) -m venv $(AUDIT)/tools
 	$(AUDIT)/tools/bin/python -m pip install --quiet --disable-pip-version-check pip-audit cyclonedx-bom
 	$(AUDIT)/tools/bin/cyclonedx-py environment --output-reproducible --output-file $(AUDIT)/sbom.json $(AUDIT)/product/bin/python
-	$(AUDIT)/tools/bin/pip-audit --skip-editable --path "$$($(AUDIT)/product/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"
+	$(AUDIT)/product/bin/python -m pip freeze --exclude agent-server > $(AUDIT)/product.txt
+	$(AUDIT)/tools/bin/pip-audit --strict --no-deps --disable-pip --requirement $(AUDIT)/product.txt
 
 recordings: $(STAMP)
 	$(BIN)/python recorded_streams/make.py
