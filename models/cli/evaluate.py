@@ -241,6 +241,9 @@ def evaluate_interaction(
             "where it has not been. folds: SBU's five folds of people, likewise.",
         ),
     ] = "bundle",
+    row: Annotated[
+        list[str] | None, typer.Option("--row", help="Of rows: S1, S2, S3 or S4; all if left out.")
+    ] = None,
     runs: InteractionRunsOption = INTERACTION_RUNS,
     as_json: JsonOption = False,
 ) -> None:
@@ -251,7 +254,7 @@ def evaluate_interaction(
         case "bundle":
             found = {spec.name: bundle_report(spec, data, runs, model) for spec in chosen}
         case "rows":
-            found = {spec.name: rows_report(spec, data, runs) for spec in chosen}
+            found = {spec.name: rows_report(spec, data, runs, row) for spec in chosen}
         case "folds":
             found = {"sbu": folds_report(data, runs)}
     show(found, as_json)

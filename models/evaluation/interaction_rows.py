@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from agent_server.errors import ConfigError
 from models.data.interactions import SBU, SBU_FOLDS, InteractionSet, Pairs, held_out
 from models.evaluation.forecasters import BENCHMARKS
 from models.evaluation.interaction import DRAWS, JUDGES, PUBLISHED, Court, React, stand_still
@@ -53,9 +54,23 @@ def bundle_report(
 
 
 def rows_report(
-    spec: InteractionSet, data: Path, runs: Path, rows: Sequence[str] = tuple(ABLATIONS)
+    spec: InteractionSet, data: Path, runs: Path, rows: Sequence[str] | None = None
 ) -> dict[str, Any]:
-    """The paper's rows, each trained unless its run is in ``runs``."""
+    """The paper's rows, each trained unless its run is in ``runs``.
+
+    Args:
+        spec: The data set.
+        data: Folder that holds the set folders.
+        runs: Where runs and judges are kept.
+        rows: Which of :data:`ABLATIONS`; None for all.
+
+    Raises:
+        ConfigError: If there is no such row.
+    """
+    rows = list(ABLATIONS) if rows is None else rows
+    for row in rows:
+        if row not in ABLATIONS:
+            raise ConfigError(f"row '{row}' is none of {', '.join(ABLATIONS)}")
     court = Court.thesis(spec, data, runs)
     training = Pairs.of(spec.read(data, "train"), spec.labels)
     found = _setting(court)
