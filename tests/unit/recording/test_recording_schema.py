@@ -65,6 +65,7 @@ def test_the_core_log_is_one_object_of_several_kinds(write: Callable[[str], Path
     assert core["required"] == ["kind", "stamp_ns"]
     assert core["properties"]["kind"]["enum"] == [
         "body_lost",
+        "models",
         "renderer",
         "restored",
         "sensor",
