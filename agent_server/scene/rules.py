@@ -21,8 +21,8 @@ from agent_server.scene.rulebook import (
     SceneObject,
     StepKind,
 )
-from agent_server.suggest import suggest
 from agent_server.scene.toml_reader import NAME_FIX, Source, Table, is_name
+from agent_server.suggest import suggest
 
 _TOP_PRIORITY = 1000
 
