@@ -3,17 +3,22 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("torch", reason="needs the train extra")
+torch = pytest.importorskip("torch", reason="needs the train extra")
 
-from agent_server.domain.gesture import GESTURES
-from agent_server.domain.motion import Forecast, Quality, Window
-from agent_server.inference.fake import LastFramePredictor
-from agent_server.stages.classify import classify
-from agent_server.stages.futures import draw_futures
-from agent_server.stages.predict import predict
-from models.evaluation.figures.futures import counts_plot, features_plot, losses_plot, quality_plot
-from models.evaluation.sampled import Drawn, drawn_figures
-from models.evaluation.several import COUNTS, Futures, read_futures
+from agent_server.domain.gesture import GESTURES  # noqa: E402
+from agent_server.domain.motion import Forecast, Quality, Window  # noqa: E402
+from agent_server.inference.fake import LastFramePredictor  # noqa: E402
+from agent_server.stages.classify import classify  # noqa: E402
+from agent_server.stages.futures import draw_futures  # noqa: E402
+from agent_server.stages.predict import predict  # noqa: E402
+from models.evaluation.figures.futures import counts_plot, features_plot, losses_plot, quality_plot  # noqa: E402
+from models.evaluation.sampled import Drawn, drawn_figures, trained_sampler  # noqa: E402
+from models.evaluation.several import COUNTS, Futures, read_futures  # noqa: E402
+from models.hp_gan.config import NetworkConfig  # noqa: E402
+from models.hp_gan.judge import Judge  # noqa: E402
+from models.hp_gan.sampler import Sampler  # noqa: E402
+from models.ma_wgan.config import NetworkConfig as MaWganConfig  # noqa: E402
+from models.ma_wgan.network import Predictor  # noqa: E402
 
 
 def random_futures(windows: int = 7) -> Futures:
@@ -81,6 +86,19 @@ def test_the_evaluation_names_windows_as_the_live_stages_do() -> None:
         np.testing.assert_allclose(
             found.together(count), [row.probabilities for row in live], atol=1e-6
         )
+
+
+def test_a_manifold_aware_gan_with_noise_draws_too() -> None:
+    torch.manual_seed(0)
+    config = MaWganConfig(output="curve", noise=4, channels=8, blocks=1)
+    reference = torch.nn.functional.normalize(torch.randn(9, 150), dim=1)
+    judge = Judge(NetworkConfig(judge_width=8))
+    draw = trained_sampler(Sampler(Predictor(config, reference).eval(), 4, judge).eval())
+    seen = 0.1 * np.random.default_rng(0).standard_normal((2, 25, 9, 3)).astype(np.float32)
+    drawn = draw(seen, 3)
+    assert drawn.futures.shape == (2, 3, 50, 9, 3)
+    assert drawn.quality.shape == (2, 3)
+    assert np.abs(np.diff(drawn.futures, axis=1)).max() > 0
 
 
 def test_distances_of_drawn_futures_are_in_millimetres() -> None:
