@@ -253,6 +253,18 @@ async def run_trial(count, seed=0, within_s=24 * 3600):
         }
 
 
+_STALL = re.compile(r" ERROR agent_server\.service\.watchdog: .*")
+"""The watchdog's word that loop or models were held up, which a busy machine does too."""
+
+
+def _tracebacks(log):
+    return re.findall(r"Traceback \(most recent call last\)(?:\n[ \t].*)*\n.*", log)
+
+
+def _errors(log):
+    return [line for line in re.findall(r".* ERROR .*", log) if not _STALL.search(line)]
+
+
 def _figures(fuzzers, witness, rss, seconds, status, log):
     sent = sum(one.sent for one in fuzzers)
     warm = [mib for at, mib in rss if at >= sent / 5] or [rss[-1][1]]
@@ -266,8 +278,9 @@ def _figures(fuzzers, witness, rss, seconds, status, log):
         "connections": sum(one.connections for one in fuzzers),
         "closes": dict(sum((one.closes for one in fuzzers), Counter())),
         "answers": dict(answers.most_common()),
-        "unhandled": len(re.findall(r"Traceback \(most recent call last\)| ERROR ", log)),
-        "log_tail": log[-2000:],
+        "unhandled": len(_tracebacks(log)) + len(_errors(log)),
+        "unhandled_lines": (_errors(log) + _tracebacks(log))[:10],
+        "stalls": len(_STALL.findall(log)),
         "exit_status": status,
         "witness": {
             "frames_sent": witness.sent,
