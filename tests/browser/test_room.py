@@ -102,23 +102,25 @@ def outcomes(state, gesture):
     return [outcome for outcome in rows if outcome in ACTIVITIES]
 
 
-async def ask(server, page, gesture):
-    """Let a recorded person make a gesture until it is answered by a command, and then leave.
+@asynccontextmanager
+async def asking(server, page, gesture):
+    """A recorded person makes a gesture, which is answered by a command, and stays meanwhile.
 
-    A slow machine leaves windows out, and may miss the gesture that way.
+    A slow machine leaves windows out, and may miss the gesture that way: it is made again then.
     """
     for _ in range(PATIENT_TRIES):
         async with playing(server, gesture) as sending:
             seen = await watch(page, lambda state: is_at_a_command(state) or sending.done())
-        if is_at_a_command(seen[-1]):
-            return
+            if is_at_a_command(seen[-1]):
+                yield
+                return
     raise AssertionError(f"{gesture} was made {PATIENT_TRIES} times without a command")
 
 
 async def react(server, page, gesture):
     """Let a recorded person make a gesture; gives the states of the reaction that follows."""
-    await ask(server, page, gesture)
-    return await watch(page, is_settled)
+    async with asking(server, page, gesture):
+        return await watch(page, is_settled)
 
 
 def changes(values):
@@ -148,6 +150,7 @@ async def assert_reaction(server, page, gesture, thing, before, after, *, rises)
     assert {state["objects"][thing] for state, _ in held} == {before}
     assert states[-1]["objects"][thing] == after
     assert changes(state["objects"][thing] for state in states) == [before, after]
+    assert states[-1]["mode"] == "attention"
     assert agents[-1]["stance"] == "seated"
     doings = changes(one["doing"] for one in agents)
     if rises:
@@ -177,6 +180,7 @@ async def test_each_gesture_has_its_reaction_and_only_where_there_is_something_t
             await assert_reaction(server, page, gesture, thing, before, after, rises=rises)
         states = await react(server, page, "hello")
         assert {state["room"]["agent"]["stance"] for state in states} == {"seated"}
+        assert states[-1]["mode"] == "attention"
         objects = states[-1]["objects"]
         async with playing(server, "cold", "pleasant_face") as sending:
             seen = await watch(page, lambda state: outcomes(state, "cold")[:1] == ["gated"])
@@ -194,8 +198,8 @@ async def test_each_gesture_has_its_reaction_and_only_where_there_is_something_t
 
 async def test_a_reaction_is_cut_short_and_taken_back_gracefully():
     async with room(alter_rule=hasty) as (server, page, _):
-        await ask(server, page, "cold")
-        await watch(page, lambda state: state["room"]["agent"]["stance"] == "walking")
+        async with asking(server, page, "cold"):
+            await watch(page, lambda state: state["room"]["agent"]["stance"] == "walking")
         async with playing(server, "loud"):
             # The agent would be at the window by the time that somebody has become loud: it waits.
             await watch(page, lambda state: outcomes(state, "loud"), moves=False)
@@ -219,8 +223,8 @@ async def test_a_reaction_is_cut_short_and_taken_back_gracefully():
 
 async def test_a_reaction_goes_on_over_a_lost_connection_and_starts_again_on_a_new_page():
     async with room(alter_rule=patient) as (server, page, _):
-        await ask(server, page, "cold")
-        await watch(page, lambda state: state["room"]["agent"]["stance"] == "walking")
+        async with asking(server, page, "cold"):
+            await watch(page, lambda state: state["room"]["agent"]["stance"] == "walking")
         session = server.hub.sessions["s"]
         for client in list(session.audience.clients):
             client.outbox.close(1011, "something broke")
@@ -231,7 +235,8 @@ async def test_a_reaction_goes_on_over_a_lost_connection_and_starts_again_on_a_n
         assert "stand_up" not in [state["room"]["agent"]["doing"] for state in states]
         assert session.counters["resent_commands"] == 1
         assert session.counters["commands_done"] == session.counters["commands"]
-        await ask(server, page, "loud")
+        async with asking(server, page, "loud"):
+            pass
         await watch(page, lambda state: state["room"]["agent"]["stance"] == "walking")
         await page.reload()
         await enter(page)
