@@ -262,7 +262,7 @@ export class App {
     const joints = isFresh(pose, time) ? pose.value.joints : null;
     if (joints !== this.#shownPose) stage.setPose(joints);
     this.#shownPose = joints;
-    const motion = joints !== null && isFresh(forecast, time) ? forecast.value.positions : null;
+    const motion = joints !== null && isFresh(forecast, time) ? forecast.value : null;
     if (motion !== this.#shownForecast) stage.setForecast(motion);
     this.#shownForecast = motion;
     stage.step(dtMs);

@@ -8,11 +8,12 @@ import {
   Scene,
   WebGLRenderer,
 } from "three";
-import type { JointSample, Point } from "../protocol/messages.ts";
+import type { ForecastMessage, JointSample } from "../protocol/messages.ts";
 import { JOINT } from "../protocol/skeleton.ts";
 import { Figure } from "./figure.ts";
 import { Floor } from "./floor.ts";
 import { Ghost } from "./ghost.ts";
+import { Others } from "./others.ts";
 import { Orbit } from "./orbit.ts";
 
 const FIELD_OF_VIEW = 32;
@@ -38,6 +39,7 @@ export class Stage {
   readonly #orbit: Orbit;
   readonly #figure: Figure;
   readonly #ghost: Ghost;
+  readonly #others: Others;
   readonly #floor: Floor;
   readonly #element: HTMLElement;
   #isDirty = true;
@@ -64,6 +66,7 @@ export class Stage {
     const color = (name: string): Color => new Color(css.getPropertyValue(name).trim());
     this.#figure = new Figure(color("--measured"), color("--uncertain"));
     this.#ghost = new Ghost(color("--forecast"));
+    this.#others = new Others(color("--forecast"));
     this.#floor = new Floor(color("--grid"));
     this.#floor.group.position.set(0, -GRID_BELOW_NAVEL_M, 2.4);
 
@@ -73,7 +76,8 @@ export class Stage {
     const rim = new DirectionalLight(color("--forecast"), 0.9);
     rim.position.set(-2, 1.5, 2.5);
     const sky = new HemisphereLight(0xdfe8ff, 0x1a2233, 1.0);
-    this.#scene.add(key, rim, sky, this.#floor.group, this.#figure.group, this.#ghost.group);
+    this.#scene.add(key, rim, sky, this.#floor.group, this.#figure.group);
+    this.#scene.add(this.#ghost.group, this.#others.group);
     this.#orbit = new Orbit(this.#camera, canvas, options.isCalm);
     new ResizeObserver(() => this.#resize()).observe(element);
     this.#resize();
@@ -92,10 +96,11 @@ export class Stage {
     this.#hasFloor = true;
   }
 
-  /** Show a forecast in the camera frame, or none. */
-  setForecast(positions: readonly (readonly Point[])[] | null): void {
+  /** Show a forecast in the camera frame and what else may follow, or none. */
+  setForecast(forecast: Pick<ForecastMessage, "positions" | "futures"> | null): void {
     this.#isDirty = true;
-    this.#ghost.set(positions);
+    this.#others.set(forecast?.futures ?? []);
+    this.#ghost.set(forecast?.positions ?? null);
     this.#ghost.place(this.#figure.follower.points);
   }
 
