@@ -103,7 +103,7 @@ class TrainConfig:
 
 
 SERVER = TrainConfig()
-SHORT = replace(SERVER, steps=100, batch=16, validate_every=50, judged_from=50)
+SHORT = replace(SERVER, steps=100, batch=16, validate_every=50, judged_from=100)
 
 CONFIGS: dict[str, TrainConfig] = {
     "server": SERVER,
