@@ -41,9 +41,9 @@ MOMENTS = (
     ("cold", "It is cold: the window is closed", holds("window")),
     ("hot", "It is hot: the window is opened", holds("window")),
     ("loud", "It is loud: the hi-fi is turned down", holds("hifi")),
-    ("bright", "It is bright: the curtain is closed", holds("curtain")),
     ("smell", "It smells: the cigarette is put out", holds("cigarette")),
     ("hello", "Hello: the agent looks up", looks_round),
+    ("bright", "It is bright: the curtain is closed", holds("curtain")),
 )
 _BARE = """
 for (const id of ["body-view", "act", "camera"]) {
