@@ -30,7 +30,12 @@ from agent_server.cli.options import FuturesOption, JsonOption, run, settings_wi
 from agent_server.config import Settings
 from agent_server.transports.server import load_models, load_room
 
-bench = typer.Typer(name="bench", help="Measure the product on this machine.", no_args_is_help=True)
+bench = typer.Typer(
+    name="bench",
+    help="Measure the product on this machine.",
+    no_args_is_help=True,
+    add_completion=False,
+)
 
 
 @bench.command()

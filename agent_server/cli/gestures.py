@@ -33,7 +33,10 @@ LINGER_S = 24 * 3600.0
 NEEDS_TRAINING = ("models", "torch")
 
 gestures = typer.Typer(
-    name="gestures", help="Teach the agent gestures of your own.", no_args_is_help=True
+    name="gestures",
+    help="Teach the agent gestures of your own.",
+    no_args_is_help=True,
+    add_completion=False,
 )
 
 

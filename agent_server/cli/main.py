@@ -7,38 +7,18 @@ from rich.console import Console
 from rich.markup import escape
 
 from agent_server import __version__
-from agent_server.cli.bench import bench
-from agent_server.cli.config import check_config, config
-from agent_server.cli.convert import convert
-from agent_server.cli.demo import demo
-from agent_server.cli.doctor import doctor
-from agent_server.cli.export import export
-from agent_server.cli.gestures import gestures
-from agent_server.cli.qa import qa
-from agent_server.cli.record import record
-from agent_server.cli.recover import recover
-from agent_server.cli.replay import replay
-from agent_server.cli.schema import schema
-from agent_server.cli.serve import serve
-from agent_server.cli.token import token
-from agent_server.cli.tools import annotate, anonymise, cut, info, merge
+from agent_server.cli.commands import Commands
 from agent_server.errors import AgentServerError
 from agent_server.logs import LogFormat, set_up_logs
 
 app = typer.Typer(
     name="agent-server",
+    cls=Commands,
     help="Lets a virtual agent read a person's body and face, and react.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-for command in (demo, serve, replay, convert, record, recover, schema, config, token, doctor):
-    app.command()(command)
-for tool in (info, cut, merge, annotate, anonymise, export, qa):
-    app.command(rich_help_panel="Recordings")(tool)
-app.command(name="check-config")(check_config)
-app.add_typer(gestures)
-app.add_typer(bench)
 
 
 def _show_version(wanted: bool) -> None:
