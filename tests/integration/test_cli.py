@@ -140,7 +140,8 @@ def test_benchmarks_print_json():
     assert ingest["us_per_frame"] > 0
     assert ingest["joints"] == 25
     decision = json.loads(run("bench", "decision", "--rounds", 1, "--json"))
-    assert set(decision["stages"]) == {"affect", "window", "predict", "classify", "decide"}
+    stages = ("affect", "window", "predict", "futures", "classify", "decide")
+    assert tuple(decision["stages"]) == stages
     assert 0 < decision["p50_ms"] <= decision["p95_ms"] <= decision["p99_ms"]
     load = json.loads(run("bench", "load", "--sessions", 2, "--seconds", 4, "--json"))
     assert load["sessions"] == 2
