@@ -83,7 +83,7 @@ async def test_the_pages_landmarks_are_the_servers(film, tmp_path):
         await switched_on(page, lambda camera: camera["hasFace"])
         state = await until(page, lambda s: s["affect"] is not None and len(journal.taken) > 3)
         assert state["affect"]["valence"] < -1
-        await page.evaluate("window.agentPage.step(100)")
+        await page.evaluate("window.agentPage.step(100, false)")
         assert "Face seen" in await words(page)
         await page.screenshot(path=tmp_path / "camera.png")
         assert page.complaints == []
@@ -217,7 +217,7 @@ async def test_another_sensors_face_is_not_pushed_aside_unasked(film):
         await switched_on(page, lambda camera: camera["link"] == "taken")
         # The page is told once, and leaves it at that.
         assert server.hub.sessions["cam"].counters["rejected_messages"] == 1
-        await page.evaluate("window.agentPage.step(300)")
+        await page.evaluate("window.agentPage.step(300, false)")
         assert "Another sensor sends" in await words(page)
         await page.click("text=Send mine instead")
         state = await until(
@@ -238,7 +238,7 @@ async def test_a_place_that_is_taken_over_is_left(film):
         async with server.join("sensor", "cam", hello=hello) as other:
             await other.send(m.Affect(0, 1.0, 1.0))
             await camera_state(page, lambda camera: camera["link"] == "replaced")
-            await page.evaluate("window.agentPage.step(300)")
+            await page.evaluate("window.agentPage.step(300, false)")
             assert "Another sensor has taken over" in await words(page)
             (sensor,) = server.hub.sessions["cam"].audience.having("sensor")
             assert sensor.hello.client == "tester"
@@ -254,7 +254,7 @@ async def test_a_neutral_face_is_learnt_kept_and_forgotten(film):
         await switched_on(page, lambda camera: camera["hasFace"])
         before = (await until(page, lambda s: s["affect"] is not None))["affect"]["valence"]
         assert before > 1
-        await page.evaluate("window.agentPage.step(300)")
+        await page.evaluate("window.agentPage.step(300, false)")
         await page.click("text=My face is neutral")
         assert "Look neutral" in await words(page)
         state = await camera_state(page, lambda camera: camera["neutral"] is not None)

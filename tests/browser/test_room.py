@@ -41,7 +41,7 @@ async def room(**options):
 
 async def enter(page):
     """Wait until the agent is there and acts."""
-    return await until(page, lambda state: state["room"]["part"] == "acting", PATIENCE_S, False)
+    return await until(page, lambda state: state["room"]["part"] == "acting", PATIENCE_S)
 
 
 @asynccontextmanager

@@ -1,7 +1,6 @@
 """A real browser on a page of the server."""
 
 import asyncio
-import json
 import shutil
 from contextlib import asynccontextmanager
 
@@ -48,16 +47,18 @@ async def browsing(url, *flags, permissions=()):
             await browser.close()
 
 
-async def until(page, condition, within_s=20.0, draws=True):
-    """Step the page until its state fits ``condition``, and give that state."""
-    step = f"window.agentPage.step(100, {json.dumps(draws)})"
+async def until(page, condition, within_s=20.0):
+    """Step the page, without drawing, until its state fits ``condition``; gives that state."""
     async with asyncio.timeout(within_s):
         while True:
-            await page.evaluate(step)
+            await page.evaluate("window.agentPage.step(100, false)")
             state = await page.evaluate("window.agentPage.state()")
             if condition(state):
-                # The state may be newer than the last picture.
-                if draws:
-                    await page.evaluate("window.agentPage.step(0)")
                 return state
             await asyncio.sleep(0.05)
+
+
+async def picture(page):
+    """Draw, and take a picture; software may take a minute for the first one."""
+    await page.evaluate("window.agentPage.step(0)")
+    return await page.screenshot(timeout=180_000)
