@@ -224,8 +224,10 @@ class _Server(uvicorn.Server):
         """Let a stop that was asked for be no failure: the process goes on to its own end."""
         with super().capture_signals():
             yield
-            # uvicorn would raise them again now, and the process die of them.
-            self._captured_signals.clear()
+            # uvicorn would raise it again now, and the process die of it. An interruption goes on:
+            # what is said of it, and its status, are the command's.
+            while signal.SIGTERM in self._captured_signals:
+                self._captured_signals.remove(signal.SIGTERM)
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """Stop in order: first the sessions, then the connections."""

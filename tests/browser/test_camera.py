@@ -46,7 +46,8 @@ class Faces(NoJournal):
     def __init__(self):
         self.taken = []
 
-    def append_input(self, value):
+    def append_input(self, value, arrival_ns):
+        del arrival_ns
         if not isinstance(value, SkeletonFrame):
             self.taken.append(value)
 

@@ -28,6 +28,11 @@ FLAGS = [
 ]
 
 
+def origin_of(address):
+    """An address as it counts for who is asked: what a page made itself is of its own origin."""
+    return address.removeprefix("blob:")
+
+
 @asynccontextmanager
 async def browsing(url, *flags, permissions=()):
     """A page on ``url``, and everything that it asked for and complained about."""
@@ -38,7 +43,7 @@ async def browsing(url, *flags, permissions=()):
         )
         page = await context.new_page()
         page.requested, page.complaints = [], []
-        page.on("request", lambda request: page.requested.append(request.url))
+        page.on("request", lambda request: page.requested.append(origin_of(request.url)))
         page.on("pageerror", lambda error: page.complaints.append(str(error)))
         await page.goto(url)
         try:
