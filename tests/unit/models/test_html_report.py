@@ -8,6 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+
+pytest.importorskip("torch", reason="needs the train extra")
+
 from matplotlib import pyplot
 
 from agent_server.domain.skeleton import CoreJoint
