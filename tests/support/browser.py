@@ -59,6 +59,8 @@ async def until(page, condition, within_s=20.0):
             await page.evaluate("window.agentPage.step(100, false)")
             state = await page.evaluate("window.agentPage.state()")
             if condition(state):
+                # The state may be newer than what the panels say.
+                await page.evaluate("window.agentPage.step(0, false)")
                 return state
             await asyncio.sleep(0.05)
 

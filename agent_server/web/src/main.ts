@@ -91,10 +91,10 @@ if (place.isStepped) {
     recorded: () => app.recorded(),
     step(ms, draws = true) {
       const end = now + ms;
-      while (now < end) {
+      do {
         now = Math.min(end, now + FRAME_MS);
         app.advance(now);
-      }
+      } while (now < end);
       if (draws) app.draw();
     },
   };
