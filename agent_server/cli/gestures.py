@@ -16,7 +16,14 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from agent_server.cli.options import HostOption, JsonOption, PortOption, run, settings_with
+from agent_server.cli.options import (
+    INTERRUPTED,
+    HostOption,
+    JsonOption,
+    PortOption,
+    run,
+    settings_with,
+)
 from agent_server.cli.prompts import Prompter
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
@@ -126,6 +133,9 @@ async def _record(
             ended.cancel()
     if takes.failure is not None:
         raise takes.failure
+    if not takes.is_complete:
+        # A background job of a shell ignores SIGINT after the server has obeyed it.
+        raise typer.Exit(INTERRUPTED)
 
 
 def _absence(hub: Hub, session: str, wait_s: float, where: str) -> str:

@@ -21,6 +21,9 @@ from agent_server.errors import ConfigError
 
 _Section = TypeVar("_Section", RecordingSettings, ServerSettings, ModelSettings, AccessSettings)
 
+INTERRUPTED = 130
+"""Exit status after SIGINT, as of a shell."""
+
 ConfigOption = Annotated[
     Path | None, typer.Option("--config", "-c", help="TOML file with settings.")
 ]
@@ -116,7 +119,7 @@ def _changed(section: _Section, **values: str | int | Path | None) -> _Section:
     return msgspec.structs.replace(section, **given)
 
 
-def run(main: Coroutine[Any, Any, None], *, interrupted_status: int = 130) -> None:
+def run(main: Coroutine[Any, Any, None], *, interrupted_status: int = INTERRUPTED) -> None:
     """Run a coroutine until it ends or the user interrupts it.
 
     Args:

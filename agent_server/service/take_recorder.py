@@ -56,6 +56,7 @@ class TakeRecorder(NoJournal):
         labels: What was written of labels.
         ended: Set when no more is written: everything is there, the disk failed, or the
             session was closed.
+        is_complete: Every repetition was shown.
         failure: Why the file could not be written, or None.
 
     Raises:
@@ -77,6 +78,7 @@ class TakeRecorder(NoJournal):
         self.frames = 0
         self.labels: list[Label] = []
         self.ended = asyncio.Event()
+        self.is_complete = False
         self.failure: RecordingError | None = None
         self._plan = plan
         self._session = session
@@ -132,6 +134,7 @@ class TakeRecorder(NoJournal):
                 self.labels.append(cue.label)
             self._tell(cue)
             if isinstance(cue, Done):
+                self.is_complete = True
                 self._finish()
 
     def _finish(self) -> None:

@@ -13,6 +13,7 @@ from agent_server.config import GateSettings, Settings
 from agent_server.domain.affect import AffectSample
 from agent_server.errors import RecordingError
 from agent_server.protocol import messages as m
+from agent_server.protocol.inputs import input_to_message
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.reader import open_recording
 from agent_server.recording.records import WindowDone
@@ -81,10 +82,26 @@ async def test_live_over_a_websocket_equals_the_replay_of_the_same_recording(tmp
     ):
         decisions = []
         listening = asyncio.create_task(all_decisions(monitor, decisions))
-        await send_paced(sensor, open_recording(path).events(), 4.0)
-        await asyncio.sleep(0.5)
+        await send_in_step(server, sensor, open_recording(path).events())
+        async with asyncio.timeout(5):
+            while len(decisions) < len(offline):  # noqa: ASYNC110 - it has no event
+                await asyncio.sleep(0.01)
         listening.cancel()
     assert lines(decisions) == offline
+
+
+async def send_in_step(server, sensor, events):
+    """Send each input when the one before has had its decision: no window is left out."""
+    for sent, event in enumerate(events, start=1):
+        await sensor.send(input_to_message(event))
+        async with asyncio.timeout(5):
+            while not has_dealt_with(server.hub.sessions["s"].counters, sent):  # noqa: ASYNC110
+                await asyncio.sleep(0.001)
+
+
+def has_dealt_with(counters, sent):
+    taken = counters["frames"] + counters["affect_samples"]
+    return taken == sent and counters["windows"] == counters["decisions"]
 
 
 async def test_a_recorded_session_with_a_renderer_replays_to_the_same_decisions(tmp_path):
