@@ -21,12 +21,12 @@ for command in (evaluate.ablate, evaluate.latency):
 
 
 def main() -> None:
-    """Run the command line; an error of the product is one sentence on stderr."""
+    """Run the command line; an error of the product is one sentence on stderr, and status 2."""
     try:
         app()
     except AgentServerError as error:
         print(error, file=sys.stderr)
-        raise SystemExit(1) from error
+        raise SystemExit(2) from error
 
 
 if __name__ == "__main__":

@@ -17,7 +17,6 @@ from rich.console import Console
 from rich.markup import escape
 
 from agent_server.cli.options import (
-    INTERRUPTED,
     HostOption,
     JsonOption,
     PortOption,
@@ -25,6 +24,7 @@ from agent_server.cli.options import (
     settings_with,
 )
 from agent_server.cli.prompts import Prompter
+from agent_server.cli.status import INTERRUPTED
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
 from agent_server.domain.stamp import to_ns

@@ -8,6 +8,7 @@ from rich.markup import escape
 
 from agent_server import __version__
 from agent_server.cli.commands import Commands
+from agent_server.cli.status import ERROR
 from agent_server.errors import AgentServerError
 from agent_server.logs import LogFormat, set_up_logs
 
@@ -43,10 +44,10 @@ def _options(
 
 
 def main() -> None:
-    """Run a command; a mistake of the user's ends it with a sentence and status 1."""
+    """Run a command; what keeps it from its work ends it with a sentence and status 2."""
     try:
         app()
     except AgentServerError as error:
         words = f"[bold red]error:[/] {escape(str(error))}"
         Console(stderr=True).print(words, highlight=False, soft_wrap=True)
-        raise SystemExit(1) from None
+        raise SystemExit(ERROR) from None

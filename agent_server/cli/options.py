@@ -9,6 +9,7 @@ from typing import Annotated, Any, TypeVar
 import msgspec
 import typer
 
+from agent_server.cli.status import INTERRUPTED
 from agent_server.config import (
     AccessSettings,
     ModelSettings,
@@ -20,9 +21,6 @@ from agent_server.config import (
 from agent_server.errors import ConfigError
 
 _Section = TypeVar("_Section", RecordingSettings, ServerSettings, ModelSettings, AccessSettings)
-
-INTERRUPTED = 130
-"""Exit status after SIGINT, as of a shell."""
 
 ConfigOption = Annotated[
     Path | None, typer.Option("--config", "-c", help="TOML file with settings.")

@@ -21,6 +21,7 @@ from rich.progress import (
 from rich.text import Text
 
 from agent_server.cli.options import ConfigOption, JsonOption, RulesOption, settings_with
+from agent_server.cli.status import ERROR, FAILED
 from agent_server.cli.verdicts import show_run
 from agent_server.config import Settings
 from agent_server.errors import ConfigError
@@ -65,8 +66,9 @@ def qa(
 ) -> None:
     """Replay a suite of labelled recordings and judge what the agent does.
 
-    Ends with status 1 where an expectation is not met. --models and --rules name a candidate: it
-    is judged, and compared decision by decision with what is in use.
+    Ends with status 1 where an expectation is not met, and with 2 where something kept it from
+    a verdict: a suite or a recording that cannot be read. --models and --rules name a candidate:
+    it is judged, and compared decision by decision with what is in use.
     """
     described = load_suite(suite)
     before = None if baseline is None else load_run(baseline)
@@ -93,8 +95,10 @@ def qa(
         show_run(console, run, comparison)
         if out is not None:
             console.print(f"\n[bold]{out / 'report.html'}[/], junit.xml and run.json are written")
+    if run.has_errors:
+        raise typer.Exit(ERROR)
     if not run.passed:
-        raise typer.Exit(1)
+        raise typer.Exit(FAILED)
 
 
 def _candidate(

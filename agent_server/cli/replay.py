@@ -25,6 +25,7 @@ from agent_server.cli.options import (
     run,
     settings_with,
 )
+from agent_server.cli.status import FAILED
 from agent_server.cli.story import Story
 from agent_server.client.once import Client, join, send_paced
 from agent_server.config import Settings
@@ -66,7 +67,8 @@ def replay(
         Path | None,
         typer.Option(
             metavar="LOG",
-            help="Print only what differs from this log of replay --json; status 1 if anything.",
+            help="Print only what differs from this log of replay --json; status 1 if anything, "
+            "2 where a file cannot be read.",
         ),
     ] = None,
     config: ConfigOption = None,
@@ -114,7 +116,7 @@ def _compare(
             else f"{len(actual)} decisions, the same {rounding}"
         )
     if found:
-        raise typer.Exit(1)
+        raise typer.Exit(FAILED)
 
 
 def _factor(speed: str) -> float:

@@ -210,6 +210,11 @@ class Run(msgspec.Struct, frozen=True):
     version: int = RUN_VERSION
 
     @property
+    def has_errors(self) -> bool:
+        """Whether there is no verdict on a recording because it could not be replayed."""
+        return any(case.status == "error" for case in self.cases)
+
+    @property
     def passed(self) -> bool:
         """Whether every expectation was met and every recording could be replayed."""
         cases = all(case.status in ("passed", "skipped") for case in self.cases)

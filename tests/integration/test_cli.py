@@ -35,7 +35,7 @@ def fails(monkeypatch, capsys, *arguments):
     monkeypatch.setattr(sys, "argv", ["agent-server", *map(str, arguments)])
     with pytest.raises(SystemExit) as ended:
         main()
-    assert ended.value.code == 1
+    assert ended.value.code == 2
     return " ".join(capsys.readouterr().err.split())
 
 
@@ -100,6 +100,9 @@ async def test_replay_sends_to_a_running_server():
         (["recover", "nowhere.mcap", "out.mcap"], "nowhere.mcap"),
         (["serve", "--classifier", "nowhere"], "no manifest.json in nowhere"),
         (["replay", STREAMS / "cold.mcap", "--predictor", "nowhere"], "no manifest.json"),
+        (["replay", STREAMS / "cold.mcap", "--expect", "nowhere.jsonl"], "nowhere.jsonl"),
+        (["qa", "nowhere"], "nowhere"),
+        (["qa", STREAMS.parent / "pyproject.toml"], "pyproject.toml"),
     ],
 )
 def test_a_mistake_is_told_in_a_sentence(monkeypatch, capsys, arguments, said):

@@ -126,7 +126,7 @@ async def test_a_sensor_that_goes_in_mid_repetition_may_come_back(tmp_path):
 async def test_a_sensor_that_does_not_come_is_waited_for_but_not_for_ever(tmp_path):
     async with recording(tmp_path, "--wait", "1") as (process, _):
         status, out, said = await ended(process)
-    assert status == 1
+    assert status == 2
     assert json.loads(out)["file"] is None
     assert "no sensor came: connect one to ws://" in " ".join(said.split())
     assert list(tmp_path.iterdir()) == []
@@ -164,7 +164,7 @@ def test_a_mistake_is_told_before_anybody_is_waited_for(
 ):
     monkeypatch.chdir(tmp_path)
     status, error = fails(monkeypatch, capsys, "record", *arguments)
-    assert (status, said in error) == (1, True), error
+    assert (status, said in error) == (2, True), error
     assert list(tmp_path.iterdir()) == []
 
 
@@ -172,7 +172,7 @@ def test_a_mistake_is_told_before_anybody_is_waited_for(
 def test_without_the_training_extra_the_way_to_it_is_told(monkeypatch, capsys, command):
     monkeypatch.setattr(module, "NEEDS_TRAINING", ("models", "a_torch_that_is_not_here"))
     status, error = fails(monkeypatch, capsys, command, "DIR")
-    assert status == 1
+    assert status == 2
     assert "needs a_torch_that_is_not_here" in error
     assert "pip install -e '.[train]'" in error
 

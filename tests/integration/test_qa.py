@@ -154,8 +154,16 @@ def test_an_expectation_that_is_not_met_fails_the_suite(small, tmp_path):
 def test_a_recording_that_cannot_be_replayed_is_an_error(small):
     whole = (small / "hello.mcap").read_bytes()
     (small / "hello.mcap").write_bytes(whole[: len(whole) // 2])
-    said = run("qa", small, "--jobs", 1, status=1)
+    said = run("qa", small, "--jobs", 1, status=2)
     assert "is truncated" in said
+
+
+def test_where_a_recording_has_no_verdict_others_that_fail_do_not_hide_it(small):
+    whole = (small / "hello.mcap").read_bytes()
+    (small / "hello.mcap").write_bytes(whole[: len(whole) // 2])
+    (small / "suite.toml").write_text("[defaults]\nwithin_ms = 100\n")
+    cases = json.loads(run("qa", small, "--jobs", 1, "--json", status=2))["cases"]
+    assert [case["status"] for case in cases] == ["failed", "error"]
 
 
 def test_other_rules_are_tried_beside_those_in_use(small, tmp_path):
