@@ -6,7 +6,7 @@ what the renderer says, and give commands. A live session runs models between th
 replay does the same without waiting, and so comes to the same decisions.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from agent_server.config import Settings
@@ -107,19 +107,19 @@ class Core:
         """
         self._gate.push(sample)
 
-    def read(self, faces: Sequence[Face]) -> list[Float64]:
-        """What the models make of faces, for :meth:`look`; nothing changes by it.
+    def require(self, face: Face) -> None:
+        """Refuse a face that :meth:`look` would not take, without reading it.
 
         Raises:
-            InvalidInput: If no model reads the kind of one.
-            InferenceError: If a model fails.
+            InvalidInput: If it is out of order, or no model reads its kind.
         """
-        return self._affect.read(faces)
+        self._gate.require_later(face.originating_ns)
+        self._affect.require_model(face)
 
     def look(
         self, face: Face, estimate: Float64 | None = None
     ) -> tuple[AffectSample, Calibrated | None]:
-        """Take a face and read affect from it, unless :meth:`read` has done so.
+        """Take a face and read affect from it, unless that has been done.
 
         Returns:
             What was read, and what a calibration came to that ended with it.

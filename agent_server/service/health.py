@@ -82,7 +82,8 @@ def health_of(session: Session, now_ns: int) -> SessionHealth:
         decisions=counters["decisions"],
         commands=counters["commands"],
         dropped=sum(
-            counters[name] for name in ("skipped_windows", "skipped_images", "rejected_messages")
+            counters[name]
+            for name in ("skipped_windows", "skipped_images", "skipped_faces", "rejected_messages")
         ),
         gesture=None if last is None else last.gesture,
         outcome=None if last is None else last.outcome.value,

@@ -46,6 +46,7 @@ RECEIVED = {
 DROPPED = {
     "window_overtaken": "skipped_windows",
     "image_overtaken": "skipped_images",
+    "face_overtaken": "skipped_faces",
     "message_rejected": "rejected_messages",
     "ack_stale": "stale_acks",
 }
@@ -74,8 +75,8 @@ class Metrics(Watcher):
         )
         stages = Histogram(
             "agent_server_stage_seconds",
-            "Time of one stage: wait, predict, classify and decide of a decision, affect of a "
-            "face.",
+            "Time of one stage: wait, predict, classify and decide of a decision; affect of a "
+            "face, with its wait.",
             ["stage"],
             buckets=SECONDS,
             registry=registry,
@@ -216,8 +217,11 @@ class _Live(Collector):
             round_trip.add_metric([role], max(trips, default=0) / NS_PER_S)
             drift.add_metric([role], max(drifts, default=0) / NS_PER_S)
         yield from (connected, round_trip, drift)
-        depth = _gauges("queue_depth", "What waits: windows, or messages to clients.", "queue")
-        depth.add_metric(["models"], self._worker.waiting)
+        depth = _gauges(
+            "queue_depth", "What waits: windows, faces, or messages to clients.", "queue"
+        )
+        depth.add_metric(["models"], self._worker.windows.waiting)
+        depth.add_metric(["faces"], self._worker.faces.waiting)
         waiting = [client.outbox.waiting for client in clients]
         depth.add_metric(["clients"], sum(waiting))
         depth.add_metric(["slowest_client"], max(waiting, default=0))

@@ -40,6 +40,7 @@ from agent_server.recording.topics import CORE
 from agent_server.service.core import Core, Job, PendingWindow
 from agent_server.service.models import Models
 from agent_server.service.worker import infer
+from agent_server.stages.affect import read_affect
 from agent_server.stages.classify import classify
 from agent_server.stages.predict import hold_last
 
@@ -109,7 +110,7 @@ class _Replay(ABC):
         rest = iter(entries)
         while block := list(islice(rest, LOOK_AHEAD)):
             faces = [one for one in block if isinstance(one, FaceLandmarks | FaceBlendshapes)]
-            estimates = iter(self._core.read(faces))
+            estimates = iter(read_affect(self._models.affect, faces))
             for entry in block:
                 if isinstance(entry, FaceLandmarks | FaceBlendshapes):
                     self._core.look(entry, next(estimates))

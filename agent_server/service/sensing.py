@@ -3,9 +3,6 @@
 import logging
 from collections.abc import Callable, Iterable
 
-from agent_server.domain.affect import Calibrated
-from agent_server.domain.face import Face
-from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import InferenceError, InvalidInput
 from agent_server.protocol import convert, faces
 from agent_server.protocol import messages as m
@@ -14,6 +11,7 @@ from agent_server.service.audience import Client
 from agent_server.service.camera import Camera
 from agent_server.service.context import Context
 from agent_server.service.core import Job
+from agent_server.service.face_reading import FaceReading, tell_calibration
 
 log = logging.getLogger(__name__)
 
@@ -24,6 +22,7 @@ class Sensing:
     Args:
         context: The session.
         camera: Where images wait to be looked at, or None where they are not taken.
+        reading: Where faces are read.
         enqueue: What becomes of the jobs that a frame gives, with its arrival.
     """
 
@@ -31,10 +30,12 @@ class Sensing:
         self,
         context: Context,
         camera: Camera | None,
+        reading: FaceReading,
         enqueue: Callable[[Iterable[Job], int], None],
     ) -> None:
         self._context = context
         self._camera = camera
+        self._faces = reading
         self._enqueue = enqueue
 
     def update_face(self, *, is_open: bool) -> None:
@@ -58,7 +59,8 @@ class Sensing:
                 self._take_skeleton(client, message, arrival_ns)
             case m.FacePoints() | m.PackedFacePoints() | m.Blendshapes():
                 stamp_ns = self._stamp(client, "face", message.originating_ns, arrival_ns)
-                self._look(faces.face_from_message(message, stamp_ns), client, arrival_ns)
+                face = faces.face_from_message(message, stamp_ns)
+                self._faces.push(face, client, arrival_ns)
                 self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
             case m.Image():
                 self._take_image(client, message, arrival_ns)
@@ -82,7 +84,7 @@ class Sensing:
                 if face is None:
                     context.counters["images_without_face"] += 1
                 elif image.client in context.audience.clients:
-                    self._look(face, image.client, image.arrival_ns)
+                    self._faces.push(face, image.client, image.arrival_ns)
             except InvalidInput as error:
                 # The image was bad, or a face came in another way that is newer.
                 context.counters["rejected_messages"] += 1
@@ -139,7 +141,8 @@ class Sensing:
         calibrated = self._context.core.calibrate(calibration)
         self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
         self._context.journal.append_input(calibration, arrival_ns)
-        self._show_calibration(calibrated, client)
+        if calibrated is not None:
+            tell_calibration(self._context, calibrated, client)
 
     def _take_image(self, client: Client, message: m.Image, arrival_ns: int) -> None:
         if self._camera is None:
@@ -154,32 +157,6 @@ class Sensing:
         self._accept(client, "face", message.originating_ns, stamp_ns, arrival_ns)
         counters["images"] += 1
         counters["skipped_images"] += self._camera.push(client, message.jpeg, stamp_ns, arrival_ns)
-
-    def _look(self, face: Face, client: Client, arrival_ns: int) -> None:
-        context = self._context
-        began_ns = context.clock.now_ns()
-        try:
-            sample, calibrated = context.core.look(face)
-        except InferenceError as error:
-            context.counters["affect_failures"] += 1
-            log.error("session %s: no affect from a face: %s", context.id, error)
-            context.audience.show("error", m.ErrorMessage("affect_failed", str(error)))
-            return
-        for watcher in context.watchers:
-            watcher.read_affect((context.clock.now_ns() - began_ns) / NS_PER_S)
-        context.counters["faces"] += 1
-        context.journal.append_input(face, arrival_ns)
-        context.avatar.show_face(context.id, face)
-        context.audience.show("affect", convert.affect_telemetry(sample))
-        self._show_calibration(calibrated, client)
-
-    def _show_calibration(self, calibrated: Calibrated | None, client: Client) -> None:
-        """Tell the monitors and the sensor what a calibration came to."""
-        if calibrated is None:
-            return
-        state = faces.calibrated_message(calibrated)
-        self._context.audience.show("calibration", state)
-        client.outbox.update("calibration", state)
 
     def _stamp(self, client: Client, kind: str, originating_ns: int, arrival_ns: int) -> int:
         """The stamp, on the session's time line, of what a sensor may send; changes nothing."""

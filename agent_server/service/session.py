@@ -23,6 +23,7 @@ from agent_server.service.camera import Camera, Eyes
 from agent_server.service.context import Context
 from agent_server.service.core import Core, Job, PendingWindow
 from agent_server.service.delivery import Delivery
+from agent_server.service.face_reading import FaceReading
 from agent_server.service.journal import Journal
 from agent_server.service.load import Load, LoadGauge
 from agent_server.service.sensing import Sensing
@@ -111,7 +112,8 @@ class Session:
             self._context, store, opening.ledger, opening.epoch, to_ns(settings.server.resume_s)
         )
         camera = None if eyes is None else Camera(eyes)
-        self._sensing = Sensing(self._context, camera, self._enqueue)
+        self._faces = FaceReading(self._context, worker)
+        self._sensing = Sensing(self._context, camera, self._faces, self._enqueue)
         self._jobs: deque[_Waiting] = deque()
         self._wake = asyncio.Event()
         self._is_inferring = False
@@ -193,6 +195,7 @@ class Session:
             group.create_task(self._work(), name=f"{self.id}: jobs")
             group.create_task(self._tick(), name=f"{self.id}: ticks")
             group.create_task(self._sensing.see(), name=f"{self.id}: images")
+            group.create_task(self._faces.run(), name=f"{self.id}: faces")
 
     def silent_ns(self, now_ns: int) -> int:
         """How long no sensor has sent anything; 0 before the first."""

@@ -23,6 +23,46 @@ MIN_CALIBRATION_FACES = 5
 DECIMALS = 3
 
 
+def read_affect(models: Mapping[str, AffectModel], faces: Sequence[Face]) -> list[Float64]:
+    """What the models make of faces, each for itself.
+
+    Several faces at once take much less time than one by one, and come to the same bits.
+
+    Args:
+        models: Input kind (``mesh``, ``points68``, ``blendshapes``) -> its model.
+        faces: Of any kinds.
+
+    Returns:
+        For each face valence, arousal and their standard deviations, on [-10, 10]: shape (4,).
+
+    Raises:
+        InvalidInput: If there is no model for one of them, or its points are no face.
+        InferenceError: If a model fails.
+    """
+    estimates: list[Float64] = [_NOTHING] * len(faces)
+    kinds: dict[tuple[str, int], list[int]] = {}
+    for index, face in enumerate(faces):
+        kinds.setdefault((_source(face), _values(face).size), []).append(index)
+    for (source, _), indices in kinds.items():
+        model = _model(models, source)
+        features = _FEATURES[source](np.stack([_values(faces[index]) for index in indices]))
+        rows = model.estimate(features).astype(np.float64) * AFFECT_LIMIT
+        for index, row in zip(indices, rows, strict=True):
+            estimates[index] = row
+    return estimates
+
+
+def _model(models: Mapping[str, AffectModel], source: str) -> AffectModel:
+    model = models.get(source)
+    if model is None:
+        raise InvalidInput(
+            f"this server has no model that reads {source}: send valence and arousal",
+            field="type",
+            code="no_model",
+        )
+    return model
+
+
 class AffectEstimator:
     """Reads one person's face.
 
@@ -40,35 +80,13 @@ class AffectEstimator:
         self._calibration: Calibration | None = None
         self._neutral_faces: list[Float64] = []
 
-    def read(self, faces: Sequence[Face]) -> list[Float64]:
-        """What the models make of faces, each for itself; nothing changes by it.
-
-        Several faces at once take much less time than one by one, and come to the same bits.
-
-        Returns:
-            For each face valence, arousal and their standard deviations, on [-10, 10]: shape (4,).
+    def require_model(self, face: Face) -> None:
+        """Refuse a face that no model reads.
 
         Raises:
-            InvalidInput: If there is no model for one of them.
-            InferenceError: If a model fails.
+            InvalidInput: If none does.
         """
-        estimates: list[Float64] = [_NOTHING] * len(faces)
-        kinds: dict[tuple[str, int], list[int]] = {}
-        for index, face in enumerate(faces):
-            kinds.setdefault((_source(face), _values(face).size), []).append(index)
-        for (source, _), indices in kinds.items():
-            model = self._models.get(source)
-            if model is None:
-                raise InvalidInput(
-                    f"this server has no model that reads {source}: send valence and arousal",
-                    field="type",
-                    code="no_model",
-                )
-            features = _FEATURES[source](np.stack([_values(faces[index]) for index in indices]))
-            rows = model.estimate(features).astype(np.float64) * AFFECT_LIMIT
-            for index, row in zip(indices, rows, strict=True):
-                estimates[index] = row
-        return estimates
+        _model(self._models, _source(face))
 
     def push(
         self, face: Face, estimate: Float64 | None = None
@@ -77,7 +95,7 @@ class AffectEstimator:
 
         Args:
             face: The face.
-            estimate: What :meth:`read` made of it, if it has been read already.
+            estimate: What :func:`read_affect` made of it, if it has been read already.
 
         Returns:
             Affect at the time of the face, and what a calibration came to that ended with it.
@@ -89,7 +107,7 @@ class AffectEstimator:
         now_ns = face.originating_ns
         source = _source(face)
         if estimate is None:
-            (estimate,) = self.read([face])
+            (estimate,) = read_affect(self._models, [face])
         if source != self._source:
             self._source = source
             self._recent.clear()

@@ -22,6 +22,21 @@ _REMEMBERED = 64
 """Faces that a late window may go with: two seconds at 30 Hz."""
 
 
+def require_later(stamp_ns: int, latest_ns: int) -> None:
+    """Refuse a face that is not later than the latest.
+
+    Raises:
+        InvalidInput: If it is not.
+    """
+    if stamp_ns <= latest_ns:
+        raise InvalidInput(
+            f"originating_ns is {stamp_ns}, and {latest_ns} has been seen: send each face "
+            "once, in the order of capture",
+            field="originating_ns",
+            code="out_of_order",
+        )
+
+
 class AffectGate:
     """Follows the affect, or the gaze, of one person.
 
@@ -64,13 +79,8 @@ class AffectGate:
         Raises:
             InvalidInput: If it is not.
         """
-        if self._faces and stamp_ns <= (latest_ns := self._faces[-1][0].originating_ns):
-            raise InvalidInput(
-                f"originating_ns is {stamp_ns}, and {latest_ns} has been seen: send each face "
-                "once, in the order of capture",
-                field="originating_ns",
-                code="out_of_order",
-            )
+        if self._faces:
+            require_later(stamp_ns, self._faces[-1][0].originating_ns)
 
     def push_gaze(self, sample: GazeSample) -> None:
         """Take the next gaze.

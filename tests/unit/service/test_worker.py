@@ -10,8 +10,9 @@ import pytest
 from agent_server.domain.motion import Quality, Window
 from agent_server.errors import InferenceError
 from agent_server.inference.fake import LastFramePredictor, RuleClassifier
+from agent_server.service.batcher import MAX_BATCH
 from agent_server.service.models import Models
-from agent_server.service.worker import MAX_BATCH, InferenceWorker, infer
+from agent_server.service.worker import InferenceWorker, infer
 from tests.support.models import fake_models
 
 
@@ -67,7 +68,7 @@ async def test_windows_that_wait_are_run_together_and_kept_apart():
         predictor.may_go.set()
         results = await asyncio.gather(first, *rest)
     assert predictor.sizes == [1, MAX_BATCH, 2]
-    assert worker.largest_batch == MAX_BATCH
+    assert worker.windows.largest_batch == MAX_BATCH
     heights = [float(result.forecast.positions[0, 0, 1]) for result in results]
     assert heights == [0.5, *range(1, MAX_BATCH + 3)]
 

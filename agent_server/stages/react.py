@@ -1,0 +1,144 @@
+"""From what a person does to the agent's reaction, which is made while it plays.
+
+The generator is given the three seconds that a decision is made on, the second that was seen and
+the two that are expected, and writes the reaction to all of it. What of it falls into the
+second that was seen is over; the rest is played from the moment of the decision on, in time with
+the person.
+"""
+
+import hashlib
+from collections.abc import Iterator
+from math import floor
+
+import numpy as np
+
+from agent_server.domain.arrays import Float32
+from agent_server.domain.model import Reactor
+from agent_server.domain.motion import CLASSIFIED_FRAMES, RATE_HZ, SEEN_FRAMES, Forecast, Window
+from agent_server.domain.reaction import Stretch, TrainingRange
+from agent_server.errors import InferenceError
+from agent_server.skeleton.pair import (
+    TORSO,
+    UPPER_BODY,
+    as_action,
+    as_agent,
+    bone_vectors,
+    with_lengths,
+)
+
+STRETCH_FRAMES = 5
+"""Frames that are given at once: a fifth of a second."""
+UPPER_BONES = UPPER_BODY - 1
+NO_FRAMES = np.zeros((0, 15, 3), np.float32)
+
+
+def react(reactor: Reactor, window: Window, forecast: Forecast, seed: str) -> Iterator[Stretch]:
+    """Make a reaction, stretch by stretch; the last one says so.
+
+    Args:
+        reactor: Makes it.
+        window: What was seen.
+        forecast: What is expected.
+        seed: The same text gives the same noise.
+    """
+    given = reactor.range
+    first = np.array(given.reaction, np.float32)
+    person = np.concatenate([window.positions, forecast.positions])
+    action = _resampled(as_action(person, np.array(given.action, np.float32)), reactor.rate_hz)
+    poses = reactor.react(action[: reactor.frames], first, noise_of(seed, reactor.latent))
+    lengths = np.linalg.norm(bone_vectors(first), axis=-1)
+    doubt = Doubt(given, reactor.rate_hz)
+    waiting: list[Float32] = []
+    sent, at = 0, SEEN_FRAMES - 1  # frames given, and the next of the 75 to be made
+    refused, last = None, first
+
+    def stretch(count: int, *, is_last: bool = False) -> Stretch:
+        nonlocal sent
+        chosen, waiting[:] = waiting[:count], waiting[count:]
+        frames = as_agent(with_lengths(np.stack(chosen), lengths), first) if chosen else NO_FRAMES
+        frames.flags.writeable = False
+        made = Stretch(sent, frames, is_last, refused if is_last else None)
+        sent += len(chosen)
+        return made
+
+    try:
+        for index, pose in enumerate(poses):
+            refused = doubt.push(pose)
+            if refused is not None:
+                break
+            while (place := at * reactor.rate_hz / RATE_HZ) <= index:
+                waiting.append((last + (place - index + 1) * (pose - last)).astype(np.float32))
+                at += 1
+            last = pose
+            while len(waiting) > STRETCH_FRAMES:
+                yield stretch(STRETCH_FRAMES)
+    except InferenceError as error:
+        refused = str(error)
+    if refused is None and not (sent or waiting):
+        refused = "the reaction is over before it begins"
+    yield stretch(len(waiting), is_last=True)
+
+
+def noise_of(seed: str, size: int) -> Float32:
+    """Normal noise that a text alone decides on, shape (size,)."""
+    number = int.from_bytes(hashlib.sha256(seed.encode()).digest(), "big")
+    return np.random.default_rng(number).standard_normal(size, dtype=np.float32)
+
+
+def _resampled(motion: Float32, rate_hz: int) -> Float32:
+    """Motion (75, J, 3) of 25 Hz at another rate, between its first and its last frame."""
+    count = floor((CLASSIFIED_FRAMES - 1) * rate_hz / RATE_HZ) + 1
+    places = np.arange(count) * RATE_HZ / rate_hz
+    before = np.minimum(places.astype(np.intp), CLASSIFIED_FRAMES - 2)
+    share = (places - before)[:, None, None].astype(np.float32)
+    between: Float32 = motion[before] + share * (motion[before + 1] - motion[before])
+    return between
+
+
+class Doubt:
+    """Whether a motion is one that the generator could have learnt: limits, no judgement.
+
+    Looked at are head, neck, torso, shoulders, elbows and hands, as the generator gives them:
+    lengths of bones before they are set right, speed, acceleration, distance from the torso.
+
+    Args:
+        known: The limits.
+        rate_hz: Frames a second.
+    """
+
+    def __init__(self, known: TrainingRange, rate_hz: int) -> None:
+        self._known = known
+        self._rate_hz = rate_hz
+        bones = bone_vectors(np.array(known.reaction, np.float32))[:UPPER_BONES]
+        self._lengths = np.linalg.norm(bones, axis=-1)
+        self._reach = np.array(known.reach_m) + 1e-6
+        self._before: list[Float32] = []
+
+    def push(self, pose: Float32) -> str | None:
+        """Why the motion is not to be believed from this pose (15, 3) on; None if it is."""
+        known, rate = self._known, self._rate_hz
+        upper = pose[:UPPER_BODY]
+        self._before = [*self._before[-2:], upper]
+        bones = np.linalg.norm(bone_vectors(pose)[:UPPER_BONES], axis=-1)
+        found = [
+            ("bone length off by", float(np.abs(bones / self._lengths - 1).max()), known.bone, ""),
+            ("speed", self._largest(1) * rate, known.speed_m_s, " m/s"),
+            ("acceleration", self._largest(2) * rate**2, known.acceleration_m_s2, " m/s2"),
+            (
+                "distance from the torso, of the known one,",
+                float((np.linalg.norm(upper - upper[TORSO], axis=-1) / self._reach)[1:].max()),
+                1.0,
+                "",
+            ),
+        ]
+        for what, value, limit, unit in found:
+            if not value <= limit:
+                return f"{what} {value:.2f}{unit} is more than {limit:.2f}{unit} in training"
+        return None
+
+    def _largest(self, order: int) -> float:
+        """Length of the longest difference of this order that ends at the newest pose."""
+        if len(self._before) <= order:
+            return 0.0
+        last = np.diff(np.stack(self._before), order, axis=0)[-1]
+        return float(np.linalg.norm(last, axis=-1).max())
