@@ -89,11 +89,11 @@ class Hub:
         self._worker = InferenceWorker(models)
         self._eyes = None if models.face is None else Eyes(models.face)
         self._sessions: dict[str, Session] = {}
-        self.metrics = Metrics(self._sessions, self._worker)
+        self.watchdog = Watchdog(settings.server.watchdog_s, lambda: self._worker.busy_since_s)
+        self.metrics = Metrics(self._sessions, self._worker, self.watchdog)
         self._watchers = (self.metrics, DecisionLog(), *watchers)
         self.warm = asyncio.Event()
         self.gauge = LoadGauge()
-        self.watchdog = Watchdog(settings.server.watchdog_s, lambda: self._worker.busy_since_s)
         self._clients = 0
         self._empty = asyncio.Event()
         self._empty.set()
@@ -108,6 +108,11 @@ class Hub:
     def sessions(self) -> Mapping[str, Session]:
         """Open sessions by id."""
         return self._sessions
+
+    @property
+    def rules(self) -> Rules:
+        """The room's rules, the same for all sessions."""
+        return self._rules
 
     @property
     def models(self) -> Models:

@@ -22,6 +22,7 @@ from agent_server.service.swap import Swapper
 from agent_server.transports.admin import ADMIN_PATHS, admin_router
 from agent_server.transports.bundles import PAGE_FILES, bundle_router
 from agent_server.transports.guard import Guard, admitted, refused, require
+from agent_server.transports.labelling import labelling_router
 from agent_server.transports.people import people_router
 from agent_server.transports.websocket import websocket_router
 
@@ -179,8 +180,10 @@ def create_app(
             return JSONResponse({"detail": str(error)}, 422)
         return JSONResponse({"objects": session.delivery.scene().objects})
 
-    streams = hub.settings.server.streams
-    app.include_router(people_router(assets.streams() if streams is None else Path(streams)))
+    own = hub.settings.server.streams
+    streams = assets.streams() if own is None else Path(own)
+    app.include_router(people_router(streams))
+    app.include_router(labelling_router(hub, streams, is_own=own is not None))
     app.include_router(bundle_router(swapper))
 
     if (page / "index.html").exists():

@@ -50,12 +50,12 @@ def people_router(streams: Path) -> APIRouter:
     @router.get("/streams")
     async def names() -> dict[str, list[str]]:
         """The recordings that may be played."""
-        return {"streams": sorted(_files(streams))}
+        return {"streams": sorted(recordings_in(streams))}
 
     @router.get("/streams/{name}")
     async def stream(name: str) -> Response:
         """What the sensors of a recording sent, in order, one message a line."""
-        file = _files(streams).get(name)
+        file = recordings_in(streams).get(name)
         if file is None:
             return JSONResponse({"detail": f"there is no recording {name!r}"}, 404)
         try:
@@ -67,7 +67,8 @@ def people_router(streams: Path) -> APIRouter:
     return router
 
 
-def _files(folder: Path) -> Mapping[str, Path]:
+def recordings_in(folder: Path) -> Mapping[str, Path]:
+    """Recordings of a folder by their name, which is that of the file without its ending."""
     return {path.stem: path for path in folder.glob(f"*{SUFFIX}")}
 
 

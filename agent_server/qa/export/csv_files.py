@@ -7,7 +7,7 @@ from pathlib import Path
 from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import InvalidInput
 from agent_server.qa.export.content import Content, in_camera
-from agent_server.qa.tools.label_table import COLUMNS
+from agent_server.recording.label_table import COLUMNS, label_rows
 from agent_server.skeleton.formats import get_format
 
 Row = Sequence[object]
@@ -37,7 +37,7 @@ def write_csv(content: Content, folder: Path) -> list[Path]:
              *(f"p_{name}" for name in names)),
             _decisions(content),
         ),
-        "labels": (COLUMNS, _labels(content)),
+        "labels": (COLUMNS, label_rows(content.labels)),
     }  # fmt: skip
     files = []
     try:
@@ -69,14 +69,6 @@ def _decisions(content: Content) -> Iterable[Row]:
         yield (
             _s(d.end_ns), d.index, d.gesture, d.outcome.value, reaction, d.reason,
             *d.probabilities.values(),
-        )  # fmt: skip
-
-
-def _labels(content: Content) -> Iterable[Row]:
-    for label in content.labels:
-        yield (
-            label.gesture, _s(label.onset_ns), _s(label.offset_ns), label.subject,
-            label.expected or "", "yes" if label.quiet else "no",
         )  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from agent_server.domain.face import FaceBlendshapes, FaceLandmarks
 from agent_server.domain.model import AffectModel
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.protocol import messages as m
-from agent_server.qa.tools.items import Entry, Image, Item, Tagged, read_entries, write_entry
+from agent_server.recording.items import Entry, Image, Item, Tagged, read_entries, write_entry
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.reader import open_recording
 from agent_server.recording.records import BodyGone, Restored, SensorChanged

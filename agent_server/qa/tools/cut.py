@@ -12,8 +12,8 @@ from agent_server.domain.stamp import NS_PER_S
 from agent_server.errors import InvalidInput
 from agent_server.protocol import messages as m
 from agent_server.qa.tools.grid import ELECTION_NS, grid_start
-from agent_server.qa.tools.items import Entry, Tagged, read_entries, write_entry
 from agent_server.recording import topics
+from agent_server.recording.items import Entry, Tagged, read_entries, write_entry
 from agent_server.recording.metadata import RecordingMetadata
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.recording.records import SensorChanged

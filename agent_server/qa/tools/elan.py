@@ -19,7 +19,7 @@ from agent_server.domain.gesture import IDLE
 from agent_server.domain.label import Label
 from agent_server.domain.stamp import NS_PER_MS
 from agent_server.errors import InvalidInput
-from agent_server.qa.tools.label_table import made_label
+from agent_server.recording.label_table import made_label
 
 TIERS = ("gesture", "expected", "quiet")
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from agent_server.domain.command import Ack
 from agent_server.domain.stamp import MAX_STAMP_NS, NS_PER_S
 from agent_server.errors import InvalidInput
-from agent_server.qa.tools.items import Entry, read_entries, write_entry
+from agent_server.recording.items import Entry, read_entries, write_entry
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.recording.sink import AT_ONCE
 from agent_server.recording.whole import whole_file

@@ -18,7 +18,7 @@ from agent_server.qa.export.foxglove import write_foxglove
 from agent_server.qa.export.npz import write_npz
 from agent_server.qa.export.rerun import write_rerun
 from agent_server.qa.setup import load_setup
-from agent_server.qa.tools.label_table import read_label_table
+from agent_server.recording.label_table import read_label_table
 from agent_server.recording.reader import open_recording
 
 HELLO = Path(__file__).parents[3] / "recorded_streams" / "hello.mcap"

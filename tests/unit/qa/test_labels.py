@@ -6,7 +6,7 @@ from agent_server.domain.label import Label
 from agent_server.domain.stamp import to_ns
 from agent_server.errors import InvalidInput
 from agent_server.qa.tools.elan import read_elan
-from agent_server.qa.tools.label_table import read_label_table
+from agent_server.recording.label_table import read_label_table
 
 EAF = """<?xml version="1.0" encoding="UTF-8"?>
 <ANNOTATION_DOCUMENT AUTHOR="" DATE="2026-01-01T00:00:00+01:00" FORMAT="3.0" VERSION="3.0">

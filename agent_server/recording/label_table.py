@@ -1,13 +1,14 @@
-"""Labels from a table that a spreadsheet writes."""
+"""Labels as a table that spreadsheets read and write."""
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from io import StringIO
 from math import isfinite
 from pathlib import Path
 
 from agent_server.domain.gesture import IDLE
 from agent_server.domain.label import Label
-from agent_server.domain.stamp import to_ns
+from agent_server.domain.stamp import NS_PER_S, to_ns
 from agent_server.errors import InvalidInput
 
 COLUMNS = ("gesture", "onset_s", "offset_s", "subject", "expected", "quiet")
@@ -16,11 +17,7 @@ _WORDS = {"": False, "no": False, "false": False, "0": False, "yes": True, "true
 
 
 def read_label_table(path: Path) -> list[Label]:
-    """The labels of a CSV file with a line of headings.
-
-    ``gesture``, ``onset_s`` and ``offset_s`` are needed, in seconds from the recording's start;
-    ``subject``, ``expected`` (a reaction) and ``quiet`` (yes or no) may be empty or missing.
-    Columns are parted by commas or semicolons.
+    """The labels of a CSV file, at least one: see :func:`parse_label_table`.
 
     Raises:
         InvalidInput: If something is wrong; the text names line and column.
@@ -29,6 +26,26 @@ def read_label_table(path: Path) -> list[Label]:
         text = path.read_text("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidInput(f"{path} cannot be read as UTF-8: {error}", field="labels") from error
+    labels = parse_label_table(text, str(path))
+    if not labels:
+        raise InvalidInput(f"{path} holds no label: write one a line", field="labels")
+    return labels
+
+
+def parse_label_table(text: str, where: str) -> list[Label]:
+    """The labels of a table with a line of headings.
+
+    ``gesture``, ``onset_s`` and ``offset_s`` are needed, in seconds from the recording's start;
+    ``subject``, ``expected`` (a reaction) and ``quiet`` (yes or no) may be empty or missing.
+    Columns are parted by commas or semicolons.
+
+    Args:
+        text: The table.
+        where: What it is called in a mistake.
+
+    Raises:
+        InvalidInput: If something is wrong; the text names line and column.
+    """
     heading = text.partition("\n")[0]
     rows = csv.DictReader(text.splitlines(), delimiter=";" if ";" in heading else ",")
     names = [(name or "").strip() for name in rows.fieldnames or ()]
@@ -38,17 +55,43 @@ def read_label_table(path: Path) -> list[Label]:
     if missing or unknown:
         wrong = f"lacks {', '.join(missing)}" if missing else f"has {', '.join(unknown)}"
         raise InvalidInput(
-            f"{path}, line 1: it {wrong}: the columns are {', '.join(COLUMNS)}, of which the first "
-            "three are needed",
+            f"{where}, line 1: it {wrong}: the columns are {', '.join(COLUMNS)}, of which the "
+            "first three are needed",
             field="labels",
         )
-    labels = [
-        _label({k: (v or "").strip() for k, v in row.items() if k}, f"{path}, line {rows.line_num}")
+    return [
+        _label(
+            {k: (v or "").strip() for k, v in row.items() if k}, f"{where}, line {rows.line_num}"
+        )
         for row in rows
     ]
-    if not labels:
-        raise InvalidInput(f"{path} holds no label: write one a line", field="labels")
-    return labels
+
+
+def label_rows(labels: Iterable[Label]) -> Iterator[tuple[str, ...]]:
+    """A row for each label, in the order of ``COLUMNS``; times keep every nanosecond."""
+    for label in labels:
+        yield (
+            label.gesture,
+            _text(label.onset_ns),
+            _text(label.offset_ns),
+            label.subject,
+            label.expected or "",
+            "yes" if label.quiet else "no",
+        )
+
+
+def format_label_table(labels: Iterable[Label]) -> str:
+    """The table of some labels, which :func:`parse_label_table` reads."""
+    text = StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    writer.writerows(label_rows(labels))
+    return text.getvalue()
+
+
+def _text(stamp_ns: int) -> str:
+    seconds, rest = divmod(stamp_ns, NS_PER_S)
+    return f"{seconds}.{rest:09d}".rstrip("0").removesuffix(".")
 
 
 def _label(row: Mapping[str, str], where: str) -> Label:
