@@ -8,8 +8,7 @@ from dataclasses import dataclass
 
 from agent_server.clock import Clock
 from agent_server.config import Settings
-from agent_server.domain.decision import FacePairing, GateVerdict
-from agent_server.domain.motion import BodyLost
+from agent_server.domain.motion import BodyLost, ForecastFigures
 from agent_server.domain.scene import ObjectChanged
 from agent_server.domain.stamp import NS_PER_MS, NS_PER_S, to_ns
 from agent_server.errors import InferenceError
@@ -28,9 +27,9 @@ from agent_server.service.journal import Journal
 from agent_server.service.load import Load, LoadGauge
 from agent_server.service.sensing import Sensing
 from agent_server.service.store import Saved, SessionStore
+from agent_server.service.telling import Telling
 from agent_server.service.watching import Decided, Watcher
 from agent_server.service.worker import Inference, InferenceWorker
-from agent_server.stages.forecast_score import ForecastScore
 
 log = logging.getLogger(__name__)
 
@@ -117,8 +116,7 @@ class Session:
         self._jobs: deque[_Waiting] = deque()
         self._wake = asyncio.Event()
         self._is_inferring = False
-        self._is_skewed = False
-        self._forecasts = ForecastScore()
+        self._telling = Telling(self._context)
         if opening.saved is not None:
             self.delivery.restore(opening.saved)
 
@@ -197,6 +195,11 @@ class Session:
             group.create_task(self._sensing.see(), name=f"{self.id}: images")
             group.create_task(self._faces.run(), name=f"{self.id}: faces")
 
+    @property
+    def forecast_figures(self) -> ForecastFigures | None:
+        """How good the last minute's forecasts were, or None where no truth has come."""
+        return self._telling.forecast_figures
+
     def silent_ns(self, now_ns: int) -> int:
         """How long no sensor has sent anything; 0 before the first."""
         return self._context.timeline.idle_ns(now_ns)
@@ -265,8 +268,7 @@ class Session:
         for watcher in self._context.watchers:
             watcher.decided(seen)
         self._avatar.show_forecast(self.id, inference.forecast, window.end_ns)
-        if self._forecasts.push(window, inference.forecast):
-            self._warn_of_drift()
+        self._telling.score(window, inference.forecast)
         self.counters["decisions"] += 1
         self.counters["predictor_failures"] += failure is not None
         decided = m.DecisionMessage(
@@ -275,18 +277,18 @@ class Session:
         )
         self._journal.append_output(decided, window.end_ns)
         self.audience.show("decision", decided)
-        self._warn_of_skew(result.decision.gate)
+        self._telling.look_at(result.decision.gate)
         if self.audience.wants("forecast"):
             forecast = convert.forecast_message(window.index, window.end_ns, inference.forecast)
             self.audience.show("forecast", forecast)
         if self.audience.wants("stats"):
-            self.audience.show("stats", self._stats())
+            self.audience.show("stats", self._telling.stats())
 
     async def _tick(self) -> None:
         while True:
             await asyncio.sleep(TICK_S)
             self.delivery.wait_no_longer()
-            self._tell_of_recording()
+            self._telling.look_at_recording()
             arrival_ns = self._clock.now_ns()
             is_busy = self._jobs or self._is_inferring
             is_quiet = self._context.timeline.idle_ns(arrival_ns) >= QUIET_NS
@@ -297,14 +299,6 @@ class Session:
             jobs, commands = self._core.tick(now_ns)
             self._enqueue(jobs, arrival_ns)
             self.delivery.deliver(commands, now_ns)
-
-    def _tell_of_recording(self) -> None:
-        """Tell the monitors, once, that nothing is recorded any more."""
-        if (failure := self._journal.take_failure()) is not None:
-            self.counters["recording_failures"] += 1
-            self.audience.show("error", m.ErrorMessage("recording_failed", failure))
-        if self._journal.lost:
-            self.counters["unrecorded"] = self._journal.lost
 
     def _enqueue(self, jobs: Iterable[Job], arrival_ns: int) -> None:
         for job in jobs:
@@ -324,52 +318,6 @@ class Session:
             self._jobs.pop()
             self.counters["skipped_windows"] += 1
             self._journal.append_core(WindowSkipped(skipped.window.end_ns, skipped.window.index))
-
-    # ------------------------------------------------------------------ output
-
-    def _warn_of_skew(self, gate: GateVerdict) -> None:
-        """Tell the monitors when body and face begin to be captured too far apart."""
-        was_skewed, self._is_skewed = self._is_skewed, gate.face is FacePairing.SKEWED
-        if self._is_skewed and not was_skewed:
-            self.counters["face_skews"] += 1
-            self.audience.show(
-                "error",
-                m.ErrorMessage(
-                    "face_skew",
-                    f"the face was captured {gate.age_ms:g} ms before the end of the window: send "
-                    "faces more often, or let body and face be stamped by one clock",
-                ),
-            )
-
-    def _warn_of_drift(self) -> None:
-        """Tell the monitors when a minute's forecasts begin to be worse than none."""
-        figures = self._forecasts.figures()
-        if figures is None:
-            return
-        self.counters["forecast_drifts"] += 1
-        said = (
-            f"over the last minute forecasts were {figures.error_mm:g} mm off, and a body that "
-            f"stands still {figures.zero_velocity_mm:g} mm: is the sensor where it was, and its "
-            "rate and unit what it says?"
-        )
-        log.warning("session %s: %s", self.id, said)
-        self.audience.show("error", m.ErrorMessage("forecast_drift", said))
-
-    def _stats(self) -> m.StatsMessage:
-        c = self.counters
-        return m.StatsMessage(
-            frames=c["frames"],
-            windows=c["windows"],
-            decisions=c["decisions"],
-            commands=c["commands"],
-            skipped_windows=c["skipped_windows"],
-            predictor_failures=c["predictor_failures"],
-            rejected_messages=c["rejected_messages"],
-            missed_telemetry=self.audience.missed,
-            counters={**c, **self._core.perception.counters},
-            clients=[client.stats() for client in self.audience.clients],
-            forecast_score=convert.forecast_score_body(self._forecasts.figures()),
-        )
 
     def _timing(
         self, inference: Inference, arrival_ns: int, started_ns: int, begin_ns: int, end_ns: int
