@@ -1,7 +1,8 @@
 """How long the server takes from its start until it is ready.
 
-``python -m tests.bench.start --runs 5 --json``: from the start of the process to ``/readyz``, by the
-clock and in processor time, without the first run, which fills the disk's cache.
+``python -m tests.bench.start --runs 5 --json``: from the start of the process to
+``/readyz``, by the clock and in processor time; the first run, which fills the disk's cache, is
+left out.
 """
 
 import argparse
@@ -10,9 +11,8 @@ import statistics
 import subprocess
 import sys
 import time
-import urllib.error
-import urllib.request
 
+import httpx
 from prometheus_client.parser import text_string_to_metric_families
 
 READY_WITHIN_S = 60.0
@@ -35,16 +35,11 @@ def start():
 
 
 def _is_ready(url):
-    try:
-        with urllib.request.urlopen(f"{url}/readyz", timeout=10) as answer:
-            return answer.status == 200
-    except urllib.error.HTTPError:
-        return False
+    return httpx.get(f"{url}/readyz", timeout=10).status_code == httpx.codes.OK
 
 
 def _processor_s(url):
-    with urllib.request.urlopen(f"{url}/metrics", timeout=10) as answer:
-        families = text_string_to_metric_families(answer.read().decode())
+    families = text_string_to_metric_families(httpx.get(f"{url}/metrics", timeout=10).text)
     samples = (sample for family in families for sample in family.samples)
     return next(one.value for one in samples if one.name == "process_cpu_seconds_total")
 
