@@ -90,7 +90,7 @@ def _compress(dist: Path) -> None:
 def _sources(web: Path) -> Iterator[Path]:
     """Everything that the built page depends on."""
     yield web.parent / "__init__.py"  # the version
-    for name in ("index.html", "package.json", "package-lock.json", "vite.config.ts"):
+    for name in ("index.html", "label.html", "package.json", "package-lock.json", "vite.config.ts"):
         yield web / name
     for folder in ("public", "src"):
         yield from sorted(path for path in (web / folder).rglob("*") if path.is_file())

@@ -15,6 +15,7 @@ const page: BuildEnvironmentOptions = {
   assetsInlineLimit: 0,
   chunkSizeWarningLimit: 800,
   license: { fileName: "licenses.md" },
+  rolldownOptions: { input: ["index.html", "label.html"] },
 };
 
 /** One file beside the page, for pages of others; it shares nothing with the page's own bundle. */

@@ -108,7 +108,7 @@ export class App {
     this.#play.connect(this.#standIn, this.#recorded);
     renderPlay();
     // Where there are none the made-up person is left.
-    void recordings.names().then((names) => this.#play.offer(names), () => {});
+    void recordings.names().then((names) => this.#play.offer(names, place.labelUrl), () => {});
     this.#actLine.render(this.#roomPhase, null);
     this.#timeline = new TimelinePanel(byId("timeline"), {
       toggle: () => {

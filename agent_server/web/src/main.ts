@@ -1,4 +1,5 @@
 import "./styles/base.css";
+import "./styles/frame.css";
 import "./styles/view.css";
 import "./styles/theatre.css";
 import "./styles/camera.css";

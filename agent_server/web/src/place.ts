@@ -20,6 +20,8 @@ export interface Place {
   readonly standInUrl: string;
   /** Where the recordings are that the page may play. */
   readonly streamsUrl: string;
+  /** Where recordings are labelled, with the page's token. */
+  readonly labelUrl: string;
   /** Folder of the networks that read a face. */
   readonly modelsUrl: string;
 }
@@ -43,6 +45,7 @@ export function placeOf(address: string): Place {
     directoryUrl: new URL("v1/sessions", page).href,
     standInUrl: new URL("v1/stand-in", page).href,
     streamsUrl: new URL("v1/streams", page).href,
+    labelUrl: new URL(`label.html${page.hash}`, page).href,
     modelsUrl: new URL("v1/models/", page).href,
   };
 }

@@ -23,6 +23,8 @@ export class PlayPanel {
   readonly #instead = h("button", { type: "button", class: "quiet-button" }, "Play instead");
   readonly #recordings = h("select", { class: "recordings", "aria-label": "Play a recording" });
 
+  readonly #label = h("a", { class: "quiet-button", hidden: "" }, "Label\u2026");
+
   constructor(root: HTMLElement) {
     this.#root = root;
     const gestures = h("div", { class: "play-row" });
@@ -49,14 +51,16 @@ export class PlayPanel {
     this.#recordings.append(h("option", { value: "" }, "Play a recording\u2026"));
     root.append(
       gestures,
-      h("div", { class: "play-side" }, this.#recordings),
+      h("div", { class: "play-side" }, this.#recordings, this.#label),
       moods,
       h("div", { class: "play-side" }, this.#words, this.#instead, this.#stop),
     );
   }
 
-  /** Offer recordings. */
-  offer(names: readonly string[]): void {
+  /** Offer recordings, and the page that labels them. */
+  offer(names: readonly string[], labelUrl: string): void {
+    this.#label.href = labelUrl;
+    this.#label.hidden = false;
     for (const name of names) {
       this.#recordings.append(h("option", { value: name }, sentenceCase(name.replaceAll("_", " "))));
     }

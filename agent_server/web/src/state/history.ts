@@ -7,6 +7,7 @@ import type {
   ForecastMessage,
   PoseMessage,
 } from "../protocol/messages.ts";
+import { notable } from "./notable.ts";
 import type { Moment, Timed } from "./store.ts";
 
 export const SPAN_MS = 60_000;
@@ -14,8 +15,6 @@ export const SPAN_MS = 60_000;
 const HELD_MS = 300_000;
 /** So much affect goes before a moment, as a trail. */
 const TRAIL_MS = 4_000;
-/** Outcomes that are worth going to. */
-const NOTABLE: ReadonlySet<string> = new Set(["command", "gated", "nothing_to_do", "busy"]);
 
 /** Values of one kind in the order in which they came. */
 class Track<T> {
@@ -106,14 +105,7 @@ export class History {
 
   /** Notable decisions that came after `from` and not after `to`; of like ones in a row the first. */
   marks(from: number, to: number): readonly Timed<DecisionMessage>[] {
-    let before: string | null = null;
-    return this.decisions(from, to).filter(({ value: { decision } }) => {
-      const { outcome, gesture } = decision;
-      const kind = NOTABLE.has(outcome) ? `${outcome} ${gesture}` : null;
-      const isFirst = kind !== null && kind !== before;
-      before = kind;
-      return isFirst;
-    });
+    return notable(this.decisions(from, to), ({ value }) => value.decision);
   }
 
   /** When the mark before or after a time came, or null. */
