@@ -31,6 +31,7 @@ from models.cli.options import (
     model_of,
     show,
 )
+from models.data.interaction_sets import two_person_set
 from models.data.interactions import INTERACTION_SETS, interaction_set
 from models.data.labelled_faces import is_training_set, read_faces, test_split
 from models.data.splits import synthetic_split
@@ -41,6 +42,11 @@ from models.evaluation.affect_page import write_affect_page
 from models.evaluation.forecasters import bundled, forecaster
 from models.evaluation.futures_page import futures_report
 from models.evaluation.gesture_page import write_gesture_page
+from models.evaluation.interaction_pair_rows import (
+    bundled_sets,
+    pair_bundle_report,
+    pair_rows_report,
+)
 from models.evaluation.interaction_rows import bundle_report, folds_report, rows_report
 from models.evaluation.landmarks import compare_with_mediapipe, on_one_core
 from models.evaluation.latency import bundle_latency, reaction_bundle_latency
@@ -229,16 +235,26 @@ def _shipped(
 @app.command("interaction")
 def evaluate_interaction(
     data: DataOption,
-    model: Annotated[str, typer.Option("--model", help="Name of the bundles.")] = "interformer",
+    model: Annotated[
+        Literal["interformer", "bigraphdiff"],
+        typer.Option(
+            "--model", help="interformer: reactions to an action. bigraphdiff: both, from a label."
+        ),
+    ] = "interformer",
     sets: Annotated[
-        list[str] | None, typer.Option("--set", help="sbu or k3hi; both if left out.")
+        list[str] | None,
+        typer.Option(
+            "--set",
+            help="sbu or k3hi, and for bigraphdiff ntu or duetdance; all with a bundle if left "
+            "out.",
+        ),
     ] = None,
     benchmark: Annotated[
         Literal["bundle", "rows", "folds"],
         typer.Option(
             "--benchmark",
             help="bundle: the research bundles. rows: the paper's ablation S1 to S4, trained "
-            "where it has not been. folds: SBU's five folds of people, likewise.",
+            "where it has not been. folds: SBU's five folds of people, likewise (interformer).",
         ),
     ] = "bundle",
     row: Annotated[
@@ -247,8 +263,11 @@ def evaluate_interaction(
     runs: InteractionRunsOption = INTERACTION_RUNS,
     as_json: JsonOption = False,
 ) -> None:
-    """Reactions by a judge of real ones: accuracy, spread and distance of their features."""
+    """Generated motion by judges of real one: accuracy, spread and distance of its features."""
     torch.set_num_threads(1)
+    if model == "bigraphdiff":
+        show(_both_people(data, sets, benchmark, row, runs), as_json)
+        return
     chosen = [interaction_set(name) for name in sets or INTERACTION_SETS]
     match benchmark:
         case "bundle":
@@ -258,6 +277,21 @@ def evaluate_interaction(
         case "folds":
             found = {"sbu": folds_report(data, runs)}
     show(found, as_json)
+
+
+def _both_people(
+    data: Path, sets: list[str] | None, benchmark: str, row: list[str] | None, runs: Path
+) -> dict[str, Any]:
+    chosen = [two_person_set(name) for name in sets] if sets else bundled_sets()
+    match benchmark:
+        case "bundle":
+            return {spec.name: pair_bundle_report(spec, data, runs) for spec in chosen}
+        case "rows":
+            return {spec.name: pair_rows_report(spec, data, runs, row) for spec in chosen}
+        case _:
+            raise typer.BadParameter(
+                f"there is no {benchmark} of bigraphdiff: bundle or rows", param_hint="--benchmark"
+            )
 
 
 def ablate(

@@ -25,6 +25,7 @@ from models.export.affect import export_affect
 from models.export.classifier import export_classifier
 from models.export.face import export_faces
 from models.export.face_shapes import export_face_shapes
+from models.export.interactions import export_interactions
 from models.export.predictor import export_predictor
 from models.export.reaction import export_reaction
 from models.export.sampler import export_sampler
@@ -112,6 +113,19 @@ def export_reaction_model(
     """Export, check and measure a generator of reactions."""
     torch.set_num_threads(1)
     show(export_reaction(run, out, version, data, runs).results, as_json=False)
+
+
+@app.command("bigraphdiff")
+def export_bigraphdiff(
+    data: DataOption,
+    run: RunOption,
+    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    version: VersionOption = "0.1.0",
+    runs: InteractionRunsOption = INTERACTION_RUNS,
+) -> None:
+    """Export, check and measure a generator of both people's motion."""
+    torch.set_num_threads(1)
+    show(export_interactions(run, out, version, data, runs).results, as_json=False)
 
 
 @app.command("affect")

@@ -10,6 +10,7 @@ import typer
 
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
 from models.affect.config import Source
+from models.bigraphdiff.config import TrainConfig as BiGraphDiffConfig
 from models.hp_gan.config import TrainConfig as HpGanConfig
 from models.interformer.config import TrainConfig as InterformerConfig
 from models.interformer.generator.config import TrainConfig as GeneratorConfig
@@ -41,7 +42,15 @@ ARTIFACTS = Path(__file__).parents[1] / "artifacts"
 PREDICTOR = ARTIFACTS / "ma_wgan_server"
 SAMPLER = ARTIFACTS / "sampler_server"
 CLASSIFIER = ARTIFACTS / "interformer_server"
-C = TypeVar("C", MaWganConfig, SimlpeConfig, HpGanConfig, InterformerConfig, GeneratorConfig)
+C = TypeVar(
+    "C",
+    MaWganConfig,
+    SimlpeConfig,
+    HpGanConfig,
+    InterformerConfig,
+    GeneratorConfig,
+    BiGraphDiffConfig,
+)
 
 
 def model_of(bundle: Path) -> OnnxModel:

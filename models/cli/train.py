@@ -8,6 +8,8 @@ import typer
 
 from models.affect.config import named
 from models.affect.runs import train_run, training_faces
+from models.bigraphdiff.config import CONFIGS as BIGRAPHDIFF_CONFIGS
+from models.bigraphdiff.train import train as train_bigraphdiff
 from models.cli.options import (
     ARTIFACTS,
     CACHE,
@@ -164,3 +166,18 @@ def train_reaction(
     chosen = configured(GENERATOR_CONFIGS, config, steps)
     run = Run(out, chosen, seed, _command("reaction", config, seed, steps), resume)
     train_generator(chosen, run, data)
+
+
+@app.command("bigraphdiff")
+def train_interactions(
+    data: DataOption,
+    out: OutOption,
+    config: ConfigOption = "sbu",
+    seed: SeedOption = 0,
+    resume: ResumeOption = False,
+    steps: StepsOption = None,
+) -> None:
+    """Train a generator of both people's motion on the training split of a set."""
+    chosen = configured(BIGRAPHDIFF_CONFIGS, config, steps)
+    run = Run(out, chosen, seed, _command("bigraphdiff", config, seed, steps), resume)
+    train_bigraphdiff(chosen, run, data)

@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 import torch
 
-from agent_server.domain.arrays import Float32
+from agent_server.domain.arrays import Float32, Float64
 from agent_server.errors import ConfigError, InvalidInput
 from agent_server.skeleton.readers.mat5 import read_mat5
 from models.data.layouts import KINECT15
@@ -114,10 +114,13 @@ class InteractionSet:
         rows = [line.split() for line in listing.read_text().splitlines() if line.strip()]
         return [self._read(root, *row) for row in rows]
 
+    def read_people(self, action: Path, reaction: Path) -> tuple[Float32, Float32]:
+        """Both people of a recording, each of shape (T, 15, 3), metres, all frames."""
+        return read_body(action, self.order), read_body(reaction, self.order)
+
     def _read(self, root: Path, action: str, reaction: str) -> Interaction:
-        first, second = (
-            read_body(root / name, self.order)[:: self.every] for name in (action, reaction)
-        )
+        people = self.read_people(root / action, root / reaction)
+        first, second = (person[:: self.every] for person in people)
         if len(first) != len(second):
             raise InvalidInput(
                 f"{root / action} has {len(first)} frames and {reaction} {len(second)}: "
@@ -134,18 +137,33 @@ def read_body(path: Path, order: Sequence[int]) -> Float32:
         RecordingError: If the file cannot be read.
         InvalidInput: If it holds no ``curve_B`` of 45 rows.
     """
-    curve = read_mat5(path).get("curve_B")
+    metres: Float32 = (read_curve(path, order, "curve_B") * SCALE + OFFSET).astype(np.float32)
+    return metres
+
+
+def read_curve(path: Path, order: Sequence[int], variable: str) -> Float64:
+    """The joints of one person as the file has them, shape (T, 15, 3).
+
+    Args:
+        path: A MAT file.
+        order: Where it keeps our joints.
+        variable: Of 45 rows, x of all joints, then y, then z.
+
+    Raises:
+        RecordingError: If the file cannot be read.
+        InvalidInput: If it holds no such variable.
+    """
+    curve = read_mat5(path).get(variable)
     if curve is None or curve.ndim != 2 or len(curve) != 3 * JOINTS:
         found = "nothing" if curve is None else "x".join(map(str, curve.shape))
         raise InvalidInput(
-            f"{path}: curve_B ought to be {3 * JOINTS} rows (x, y, z of {JOINTS} joints) x "
+            f"{path}: {variable} ought to be {3 * JOINTS} rows (x, y, z of {JOINTS} joints) x "
             f"frames, found {found}",
-            field="curve_B",
+            field=variable,
             code="wrong_shape",
         )
     joints = curve.reshape(3, JOINTS, -1).transpose(2, 1, 0)[:, list(order)]
-    metres: Float32 = (joints * SCALE + OFFSET).astype(np.float32)
-    return metres
+    return joints.astype(np.float64)
 
 
 SBU = InteractionSet(
@@ -280,6 +298,15 @@ class Pairs:
             self.reaction[index, :longest],
             lengths,
             self.labels[index],
+        )
+
+    def head(self, frames: int) -> "Pairs":
+        """The first frames of each."""
+        return Pairs(
+            self.action[:, :frames],
+            self.reaction[:, :frames],
+            self.lengths.clamp(max=frames),
+            self.labels,
         )
 
     def draw(self, count: int, generator: torch.Generator) -> "Pairs":

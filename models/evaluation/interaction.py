@@ -67,7 +67,7 @@ class Court:
         """Train the judges, or take them from ``folder`` where they have been trained before."""
         pairs = Pairs.of(training, spec.labels)
         names = "\n".join(sorted(one.name for one in training))
-        judges = tuple(_judge(spec, pairs, names, seed, folder) for seed in range(JUDGES))
+        judges = tuple(judge_of(spec, pairs, names, seed, folder) for seed in range(JUDGES))
         return cls(spec, Pairs.of(test, spec.labels), judges)
 
     @classmethod
@@ -86,10 +86,10 @@ class Court:
             errors.append(position_error_mm(made, self.test))
         return {
             **self._summary(found),
-            "frechet_distance": _mean([row["frechet"] for row in found], 2),
-            "diversity_score": _mean([row["diversity"] for row in found], 1),
-            "error_mm": _mean(errors, 1),
-            "length_error_frames": _mean(apart, 2),
+            "frechet_distance": mean_of([row["frechet"] for row in found], 2),
+            "diversity_score": mean_of([row["diversity"] for row in found], 1),
+            "error_mm": mean_of(errors, 1),
+            "length_error_frames": mean_of(apart, 2),
         }
 
     def real(self) -> dict[str, Any]:
@@ -98,9 +98,9 @@ class Court:
 
     def _summary(self, found: Sequence[dict[str, Any]]) -> dict[str, Any]:
         return {
-            "accuracy": _mean([row["accuracy"] for row in found]),
+            "accuracy": mean_of([row["accuracy"] for row in found]),
             "by_class": {
-                label: _mean([row["by_class"][at] for row in found])
+                label: mean_of([row["by_class"][at] for row in found])
                 for at, label in enumerate(self.spec.labels)
                 if bool((self.test.labels == at).any())
             },
@@ -138,23 +138,35 @@ def as_long(reaction: torch.Tensor, true: Pairs) -> torch.Tensor:
     return torch.cat([reaction, reaction[:, -1:].expand(-1, missing, -1, -1)], dim=1)[:, :frames]
 
 
-def _judge(
-    spec: InteractionSet, pairs: Pairs, names: str, seed: int, folder: Path
+def judge_of(
+    spec: InteractionSet, pairs: Pairs, names: str, seed: int, folder: Path, people: int = 1
 ) -> RecurrentClassifier:
+    """Train a judge, or take it from ``folder`` where it has been trained before.
+
+    Args:
+        spec: The data set.
+        pairs: Real interactions to train on.
+        names: Theirs, by which a judge is found again.
+        seed: Of everything random.
+        folder: Where judges are kept.
+        people: 1 for one who sees reactions, 2 for one who sees both people.
+    """
     config = JudgeConfig()
     key = hashlib.sha256(f"{config}\n{names}".encode()).hexdigest()[:12]
-    path = folder / f"judge_{spec.name}_{key}_{seed}.pt"
+    kind = "judge" if people == 1 else "pair_judge"
+    path = folder / f"{kind}_{spec.name}_{key}_{seed}.pt"
     classes = len(spec.labels)
     if path.exists():
-        judge = RecurrentClassifier(config, classes)
+        judge = RecurrentClassifier(config, classes, people)
         judge.load_state_dict(torch.load(path, weights_only=True))
         return judge.eval()
     swap = torch.tensor([label in spec.symmetric for label in spec.labels])
-    judge = train_judge(pairs, classes, seed, swap, config)
+    judge = train_judge(pairs, classes, seed, swap, config, people)
     folder.mkdir(parents=True, exist_ok=True)
     torch.save(judge.state_dict(), path)
     return judge
 
 
-def _mean(values: Sequence[Any], digits: int = 3) -> float:
+def mean_of(values: Sequence[Any], digits: int = 3) -> float:
+    """The mean, rounded."""
     return round(float(np.mean(values)), digits)

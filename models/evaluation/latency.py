@@ -26,9 +26,11 @@ def latency_ms(model: OnnxModel, window: Float32, repeats: int = 500) -> dict[st
     return percentiles_ms(lambda: model(window), repeats)
 
 
-def percentiles_ms(call: Callable[[], object], repeats: int = 500) -> dict[str, float]:
-    """p50 and p95 in milliseconds of anything, after a warm-up."""
-    for _ in range(50):
+def percentiles_ms(
+    call: Callable[[], object], repeats: int = 500, warm_up: int = 50
+) -> dict[str, float]:
+    """p50 and p95 in milliseconds of anything, after ``warm_up`` calls."""
+    for _ in range(warm_up):
         call()
     times = np.empty(repeats)
     for i in range(repeats):

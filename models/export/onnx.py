@@ -97,6 +97,31 @@ def _plain(model: onnx.ModelProto) -> onnx.ModelProto:
     return model
 
 
+def store_halves(path: Path) -> None:
+    """Keep in 16 bits, in place, what 16 bits hold exactly; it is computed with as before.
+
+    A network whose weights were rounded (``parameter.half().float()``) becomes half as large and
+    gives the same output.
+    """
+    model = onnx.load(path)
+    graph, casts = model.graph, []
+    for initializer in graph.initializer:
+        values = onnx.numpy_helper.to_array(initializer)
+        if values.dtype != np.float32 or values.ndim == 0:
+            continue
+        with np.errstate(over="ignore"):
+            halves = values.astype(np.float16)
+        if not np.array_equal(halves.astype(np.float32), values):
+            continue
+        name, half = initializer.name, f"{initializer.name}_half"
+        initializer.CopyFrom(onnx.numpy_helper.from_array(halves, half))
+        casts.append(onnx.helper.make_node("Cast", [half], [name], to=onnx.TensorProto.FLOAT))
+    nodes = [*casts, *graph.node]
+    del graph.node[:]
+    graph.node.extend(nodes)
+    path.write_bytes(model.SerializeToString())
+
+
 def check_parity(network: nn.Module, model: OnnxModel, values: Float32) -> float:
     """Largest difference of torch and ONNX on ``values`` (N, ...).
 

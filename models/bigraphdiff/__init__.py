@@ -1,0 +1,1 @@
+"""BiGraphDiff: the name of an interaction in, the motion of both people out."""
