@@ -34,8 +34,8 @@ LONGEST_NS = to_ns(3600)
 LINES_AT_ONCE = 50
 MAX_TABLE_BYTES = 1024 * 1024
 _SHIPPED = (
-    "these are the recordings that ship, which stay as they are: name a folder of your own as "
-    "streams in [server], or download the labels"
+    "recordings that ship stay as they are; download the labels, or name a folder of your own as "
+    "streams in [server]"
 )
 
 

@@ -1,7 +1,7 @@
 /** Where recordings are labelled: one is open, the keys go to what they ask for. */
 
 import type { Stage } from "../scene3d/stage.ts";
-import { h, need, setAttribute, setText } from "../ui/dom.ts";
+import { h, need, setAttribute, setState, setText } from "../ui/dom.ts";
 import { Film } from "./film.ts";
 import { actionOf, type Action } from "./keys.ts";
 import { Marks } from "./marks.ts";
@@ -136,7 +136,7 @@ export class Desk {
       const address = new URL(location.href);
       address.searchParams.set("recording", name);
       history.replaceState(null, "", address);
-      this.#tell(about.refusal === null ? "" : `Not to be saved here: ${about.refusal}.`);
+      this.#tell("");
       this.#pick.blur();
       this.#render();
     } catch (error) {
@@ -278,10 +278,17 @@ export class Desk {
     URL.revokeObjectURL(url);
   }
 
+  /** Say what has just happened; nothing leaves what holds anyway. */
   #tell(words: string, isTrouble = false): void {
-    setText(this.#said, words);
-    this.#said.dataset["trouble"] = `${isTrouble}`;
-    this.#said.title = words;
+    const said = words === "" ? this.#standing : words;
+    setText(this.#said, said);
+    setState(this.#said, "trouble", `${isTrouble}`);
+    setAttribute(this.#said, "title", said);
+  }
+
+  get #standing(): string {
+    const refusal = this.#open?.about.refusal ?? null;
+    return refusal === null ? "" : `Labels cannot be saved here: ${refusal}.`;
   }
 
   #render(): void {

@@ -130,7 +130,7 @@ export function markWords({ gesture, expected, quiet }: Mark): string {
 }
 
 export function spanWords({ onsetS, offsetS }: Mark): string {
-  return `${clockText(onsetS)} to ${clockText(offsetS)}`;
+  return `${clockText(onsetS).replace(" s", "")} \u2013 ${clockText(offsetS)}`;
 }
 
 /** What a mark asks for: `reaction`, `quiet` or `nothing`. */
