@@ -19,5 +19,7 @@ class Ema:
         """Move the copy towards ``network``."""
         self.updates += 1
         decay = min(self.decay, (1 + self.updates) / (10 + self.updates))
-        for slow, fast in zip(self.network.parameters(), network.parameters(), strict=True):
-            slow.lerp_(fast, 1 - decay)
+        slow, fast = (
+            [*map(torch.Tensor.detach, each.parameters())] for each in (self.network, network)
+        )
+        torch._foreach_lerp_(slow, fast, 1 - decay)

@@ -62,7 +62,8 @@ class SpatialAttention(nn.Module):
     all joints together do, and scores keep their sign.
     """
 
-    bias: torch.Tensor
+    seen: torch.Tensor
+    hidden: torch.Tensor
 
     def __init__(self, config: NetworkConfig, masked: bool) -> None:
         super().__init__()
@@ -73,13 +74,17 @@ class SpatialAttention(nn.Module):
         self.keys = nn.Parameter(torch.randn(shape) * scale)
         self.values = nn.Parameter(torch.randn(shape) * scale)
         self.out = nn.Linear(config.width, config.width)
-        seen = adjacency() if masked else torch.ones(config.joints, config.joints).bool()
-        self.register_buffer("bias", torch.where(seen, 0.0, NEVER))
+        self.masked = masked
+        seen, hidden = neighbours(adjacency())
+        self.register_buffer("seen", seen, persistent=False)
+        self.register_buffer("hidden", hidden, persistent=False)
 
     def forward(
         self, x: torch.Tensor, other: torch.Tensor, near: torch.Tensor | None = None
     ) -> torch.Tensor:
         """Ask the joints of ``other`` at the same moments.
+
+        Moments come last inside, so that few features and few neighbours cost little.
 
         Args:
             x: Who asks, (B, T, D).
@@ -90,23 +95,54 @@ class SpatialAttention(nn.Module):
             (B, T, D).
         """
         size, frames, width = x.shape
-        asking, asked = self._by_coordinate(x), self._by_coordinate(other)
+        asking, asked = self._moments_last(x), self._moments_last(other)
         q, k, v = (
-            (rows @ weights).reshape(3, size * frames, self.joints, self.features)
-            for rows, weights in ((asking, self.queries), (asked, self.keys), (asked, self.values))
+            (weights.transpose(1, 2) @ each).unflatten(-1, (self.joints, -1))  # (3, F, J, M)
+            for each, weights in (
+                (asking, self.queries),
+                (asked, self.keys),
+                (asked, self.values),
+            )
         )
-        mixed = F.scaled_dot_product_attention(q, k, v, self.bias)
+        k, v = self._seen(k), self._seen(v)  # (3, F, J or 1, K, M)
+        scores = (q[:, :, :, None] * k).sum(1) * self.features**-0.5
+        if self.masked:
+            scores = scores + self.hidden
+        weights = torch.softmax(scores, dim=2)  # (3, J, K, M)
         if near is not None:
-            mixed = mixed + near.flatten(0, 1) @ v
-        moments = mixed.reshape(3, size, frames, self.joints * self.features)
-        out: torch.Tensor = self.out(moments.permute(1, 2, 0, 3).reshape(size, frames, width))
+            weights = weights + near.flatten(0, 1).permute(1, 2, 0)
+        mixed = (weights[:, None] * v).sum(3)  # (3, F, J, M)
+        moments = mixed.permute(3, 0, 2, 1).reshape(size, frames, width)
+        out: torch.Tensor = self.out(moments)
         return out
 
-    def _by_coordinate(self, x: torch.Tensor) -> torch.Tensor:
-        """(B, T, D) -> (3, B * T * J, F)."""
-        heads = x.unflatten(-1, (3, self.joints, self.features)).permute(2, 0, 1, 3, 4)
-        rows: torch.Tensor = heads.reshape(3, -1, self.features)
-        return rows
+    def _seen(self, x: torch.Tensor) -> torch.Tensor:
+        """(3, F, J, M) -> what each joint sees, (3, F, J, K, M), or all of them for each."""
+        if not self.masked:
+            return x[:, :, None]
+        table: torch.Tensor = x.index_select(2, self.seen.flatten()).unflatten(2, self.seen.shape)
+        return table
+
+    def _moments_last(self, x: torch.Tensor) -> torch.Tensor:
+        """(B, T, D) -> (3, F, J * B * T)."""
+        split = x.flatten(0, 1).unflatten(-1, (3, self.joints, self.features))
+        last: torch.Tensor = split.permute(1, 3, 2, 0).flatten(2)
+        return last
+
+
+def neighbours(mask: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
+    """Whom each joint sees, as a table.
+
+    Args:
+        mask: Shape (J, J), which joints see each other.
+
+    Returns:
+        Joints (J, K), and what hides those beyond the neighbours that there are, (J, K, 1).
+    """
+    most = int(mask.sum(dim=1).max())
+    seen = mask.int().argsort(dim=1, descending=True, stable=True)[:, :most]
+    hidden = torch.where(mask.gather(1, seen), 0.0, NEVER)
+    return seen, hidden[..., None]
 
 
 def adjacency() -> torch.Tensor:

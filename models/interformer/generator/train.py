@@ -54,7 +54,10 @@ class Learner(nn.Module):
         self.posterior = Posterior(config.network).to(self.device)
         self.model = nn.ModuleDict({"generator": self.network, "posterior": self.posterior})
         self.optimizer = torch.optim.AdamW(
-            self.model.parameters(), config.learning_rate, weight_decay=config.weight_decay
+            self.model.parameters(),
+            config.learning_rate,
+            weight_decay=config.weight_decay,
+            fused=True,
         )
         self.updater = Updater(
             self.model,

@@ -8,7 +8,11 @@ torch = pytest.importorskip("torch", reason="needs the train extra")
 from agent_server.errors import ConfigError  # noqa: E402
 from models.data.interactions import SBU, Pairs  # noqa: E402
 from models.data.layouts import KINECT15  # noqa: E402
-from models.interformer.generator.attention import adjacency, nearness  # noqa: E402
+from models.interformer.generator.attention import (  # noqa: E402
+    SpatialAttention,
+    adjacency,
+    nearness,
+)
 from models.interformer.generator.config import (  # noqa: E402
     ABLATIONS,
     PAPER,
@@ -137,6 +141,32 @@ def test_the_masks_are_those_of_the_skeleton() -> None:
     assert torch.equal(mask, mask.T)
     assert int(mask.sum()) == 15 + 2 * len(KINECT15.bones)
     assert mask[3].nonzero().flatten().tolist() == [1, 3, 4]  # neck, shoulder, elbow
+
+
+@pytest.mark.parametrize("masked", [True, False])
+def test_spatial_attention_is_attention_over_all_joints_behind_a_mask(masked: bool) -> None:
+    some, config = pairs(), replace(SMALL, features=2)
+    torch.manual_seed(0)
+    attention = SpatialAttention(config, masked)
+    x, other = torch.randn(2, *some.reaction.shape[:2], config.width)
+    near = nearness(some.reaction, some.action)
+    mask = adjacency() if masked else torch.ones(15, 15).bool()
+    told = []
+    for coordinate in range(3):
+        asking, asked = (each.unflatten(-1, (3, 15, 2))[:, :, coordinate] for each in (x, other))
+        q, k, v = (
+            each @ weights[coordinate]
+            for each, weights in (
+                (asking, attention.queries),
+                (asked, attention.keys),
+                (asked, attention.values),
+            )
+        )
+        scores = (q @ k.transpose(-1, -2) * 2**-0.5).masked_fill(~mask, -torch.inf)
+        told.append((torch.softmax(scores, -1) + (0 if masked else near)) @ v)
+    expected = attention.out(torch.stack(told, dim=2).flatten(2))
+    found = attention(x, other, None if masked else near)
+    torch.testing.assert_close(found, expected, atol=1e-5, rtol=1e-5)
 
 
 def test_near_joints_have_larger_shares() -> None:

@@ -52,7 +52,7 @@ def test_another_pace_begins_and_ends_alike() -> None:
     motion, lengths = vary_pace(some.reaction, some.lengths, generator(), 0.4)
     assert not torch.equal(lengths, some.lengths)
     assert motion.shape == some.reaction.shape
-    assert LEAST_FRAMES <= int(lengths.min()) and int(lengths.max()) <= motion.shape[1]
+    assert int(lengths.min()) >= LEAST_FRAMES and int(lengths.max()) <= motion.shape[1]
     torch.testing.assert_close(motion[:, 0], some.reaction[:, 0])
     for row, length in enumerate(lengths.tolist()):
         end = some.reaction[row, -1].expand_as(motion[row, length - 1 :])
