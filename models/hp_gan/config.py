@@ -63,6 +63,7 @@ class TrainConfig:
         critic_steps: Updates of the discriminator for one of the generator.
         judge_rate: Rate of the quality network (Adam).
         adversarial: Weight of the discriminator's score.
+        nearest: Weight of how far the nearer of two futures is from the truth, in metres.
         consistency: Weight of the jump at the seam, in metres a frame.
         diversity: Weight of the term that wants two futures of one past apart.
         energy: Weight of the centre of mass's speed and acceleration, in metres a frame.
@@ -83,6 +84,7 @@ class TrainConfig:
     critic_steps: int = 2
     judge_rate: float = 5e-4
     adversarial: float = 1.0
+    nearest: float = 50.0
     consistency: float = 50.0
     diversity: float = 1.0
     energy: float = 50.0

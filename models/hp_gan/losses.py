@@ -44,6 +44,20 @@ def diversity(
     return torch.relu(1 - apart / wanted).mean()
 
 
+def nearest(futures: Sequence[torch.Tensor], true: torch.Tensor) -> torch.Tensor:
+    """How far the nearer of several futures is from what came, in metres.
+
+    Gupta et al., "Social GAN: Socially Acceptable Trajectories with Generative Adversarial
+    Networks" (CVPR 2018): one of them ought to come true; the others are free.
+
+    Args:
+        futures: Each of shape (B, F, J, 3), metres.
+        true: What came, shape (B, F, J, 3).
+    """
+    off = torch.stack([_distance(future, true) for future in futures])
+    return off.min(dim=0).values.mean()
+
+
 def _distance(one: torch.Tensor, other: torch.Tensor) -> torch.Tensor:
     """Mean over frames and joints, shape (B,)."""
     return torch.sqrt(((one - other) ** 2).sum(-1) + TINY).mean(dim=(1, 2))

@@ -11,7 +11,7 @@ from models.data.windows import AMBIGUOUS
 from models.hp_gan.config import NetworkConfig, TrainConfig
 from models.hp_gan.discriminator import Discriminator, whole_features
 from models.hp_gan.judge import Judge
-from models.hp_gan.losses import diversity, physical_terms
+from models.hp_gan.losses import diversity, nearest, physical_terms
 from models.hp_gan.network import Generator
 from models.hp_gan.source import Named, NamedSource, server_source
 from models.ops.losses import gradient_penalty
@@ -38,15 +38,19 @@ class HpGanLearner:
         self.judge = Judge(config.network).to(self.device)
         self.updater = Updater(
             self.generator,
-            torch.optim.Adam(self.generator.parameters(), config.learning_rate, betas=(0.5, 0.9)),
+            torch.optim.Adam(
+                self.generator.parameters(), config.learning_rate, betas=(0.5, 0.9), fused=True
+            ),
             lambda step: warm_cosine(step, config.steps),
             ema=config.ema,
             clip=LARGEST_GRADIENT,
         )
         self.critic_optimizer = torch.optim.Adam(
-            self.critic.parameters(), config.critic_rate, betas=(0.5, 0.9)
+            self.critic.parameters(), config.critic_rate, betas=(0.5, 0.9), fused=True
         )
-        self.judge_optimizer = torch.optim.Adam(self.judge.parameters(), config.judge_rate)
+        self.judge_optimizer = torch.optim.Adam(
+            self.judge.parameters(), config.judge_rate, fused=True
+        )
         self.done = 0
 
     def step(self, generator: torch.Generator) -> dict[str, float]:
@@ -73,6 +77,7 @@ class HpGanLearner:
         terms["diversity"] = diversity(
             future.chunk(2), z.chunk(2), windows.future, windows.seen[:, -1]
         )
+        terms["nearest"] = nearest(future.chunk(2), windows.future)
         terms["adversarial"] = -self.critic(motion).mean()
         terms["classes"] = self._class_loss(motion, labels)
         weighted = [getattr(config, name) * term for name, term in terms.items()]

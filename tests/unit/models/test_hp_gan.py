@@ -17,7 +17,7 @@ from models.export.sampler import write_sampler  # noqa: E402
 from models.hp_gan.config import NetworkConfig, TrainConfig  # noqa: E402
 from models.hp_gan.discriminator import Discriminator, whole_features  # noqa: E402
 from models.hp_gan.judge import Judge  # noqa: E402
-from models.hp_gan.losses import consistency, diversity, energy  # noqa: E402
+from models.hp_gan.losses import consistency, diversity, energy, nearest  # noqa: E402
 from models.hp_gan.network import Generator, motion_features  # noqa: E402
 from models.hp_gan.sampler import DRAWS, Sampler  # noqa: E402
 from models.hp_gan.source import Named, NamedSource, Part, named_windows  # noqa: E402
@@ -112,6 +112,17 @@ def test_features_of_a_mixture_are_the_mixture_of_the_features() -> None:
     a, b = seen(2)[:1], seen(2)[1:] * 1.3
     mixed = motion_features(0.25 * a + 0.75 * b)
     torch.testing.assert_close(mixed, 0.25 * motion_features(a) + 0.75 * motion_features(b))
+
+
+def test_only_the_nearer_future_of_each_window_has_to_come_true() -> None:
+    true = torch.zeros(2, 50, 9, 3)
+    near, far = (
+        torch.tensor([0.1, 0.5]).view(2, 1, 1, 1),
+        torch.tensor([0.4, 0.2]).view(2, 1, 1, 1),
+    )
+    axis = torch.tensor([1.0, 0.0, 0.0])
+    futures = [true + each * axis for each in (near, far)]
+    assert float(nearest(futures, true)) == pytest.approx(0.15, abs=1e-5)
 
 
 def test_a_steady_motion_has_no_seam_and_a_jump_is_its_size() -> None:
