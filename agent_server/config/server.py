@@ -38,8 +38,8 @@ class ServerSettings(Section, frozen=True):
         session_linger_s: A session without connections is kept this long.
         resume_s: A renderer whose connection broke keeps its place this long.
         state: Folder in which sessions are remembered over a restart; None keeps them in memory.
-        streams: Folder of recordings that the page may play, for whoever is admitted; None means
-            those that ship.
+        streams: Folder of recordings that the page may play, for whoever is admitted, and whose
+            labels an operator may save; None means those that ship, which stay as they are.
         tls_cert: File with the certificate chain (PEM) for ``https`` and ``wss``; None serves
             without TLS.
         tls_key: File with the certificate's private key (PEM).
