@@ -45,7 +45,7 @@ async def test_a_stretch_is_marked_by_the_keyboard_and_saved_into_the_recording(
         await page.wait_for_selector(".label-row")
         assert await page.locator(".label-row").count() == len(old)
         first = page.locator(".label-row").nth(1)
-        assert await first.inner_text() == "Cold → Close window\ns01\n4.00 – 7.98 s"
+        assert await first.inner_text() == "Cold → Close window\ns01\n4.00 \u2013 7.98 s"
         assert await page.locator("#save").is_disabled()
 
         await press(page, *["Shift+ArrowRight"] * 2, "i", "Shift+ArrowRight", "ArrowRight", "o")
