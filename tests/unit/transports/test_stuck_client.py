@@ -11,7 +11,8 @@ from agent_server.protocol.codes import CLOSE_TOO_SLOW
 from agent_server.scene.rules import default_rules
 from agent_server.service.auth import OPEN
 from agent_server.service.hub import Hub
-from agent_server.transports.websocket import FAREWELL_S, _Entrance, _Link, _Visit
+from agent_server.transports.link import Link
+from agent_server.transports.visit import FAREWELL_S, Entrance, Visit
 from tests.support.models import fake_models
 
 JSON = CODECS[m.SUBPROTOCOL_JSON]
@@ -43,8 +44,8 @@ async def test_a_renderer_that_takes_nothing_is_let_go_when_commands_pile_up():
     hub = Hub(settings, default_rules(), models, SystemClock())
     socket = StuckWebSocket()
     async with hub.run():
-        link, entrance = _Link(socket, JSON), _Entrance(OPEN, None)
-        visit = asyncio.create_task(_Visit(hub, link, "s", "renderer", entrance).run())
+        link, entrance = Link(socket, JSON), Entrance(OPEN, None)
+        visit = asyncio.create_task(Visit(hub, link, "s", "renderer", entrance).run())
         await socket.welcomed.wait()
         session = hub.sessions["s"]
         (client,) = session.audience.clients
