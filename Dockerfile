@@ -9,15 +9,18 @@ FROM ${BUILD_IMAGE} AS build
 WORKDIR /src
 COPY . .
 # What is removed is there twice or never run: onnxruntime's library for C beside the one inside its
-# Python module, its tools for making models, zstandard's second backend, and packages' own tests.
+# Python module, its tools for making models, zstandard's second backend, packages' own tests, and
+# what only type checkers read.
 RUN python3 -m venv /build \
  && /build/bin/pip install --no-cache-dir --target /opt/agent-server '.[otel]' \
  && rm -rf /opt/agent-server/bin \
       /opt/agent-server/onnxruntime/capi/libonnxruntime.so* \
       /opt/agent-server/onnxruntime/quantization \
+      /opt/agent-server/onnxruntime/tools \
       /opt/agent-server/onnxruntime/transformers \
       /opt/agent-server/zstandard/_cffi.*.so \
- && find /opt/agent-server -type d -name tests -prune -exec rm -r {} +
+ && find /opt/agent-server -type d -name tests -prune -exec rm -r {} + \
+ && find /opt/agent-server -name "*.pyi" -delete
 # The models give their golden outputs with what is left, or there is no image.
 WORKDIR /opt/agent-server
 RUN python3 -m agent_server doctor --only models --only page
