@@ -189,6 +189,8 @@ class ModelSettings(Section, frozen=True):
             the forecast and others that are drawn beside it.
         sampler: Folder of the bundle that draws them; None takes the one that ships.
         futures_quality: A drawn future that is less probably real than this is left out.
+        reactions: Folder of the bundle that makes reactions for rules with motion = "generated";
+            None makes none. None ships: the weights may be used for research alone.
         folder: Folder within which a running server may be told to take bundles from; None lets
             nobody change its models.
     """
@@ -198,11 +200,12 @@ class ModelSettings(Section, frozen=True):
     futures: int = 1
     sampler: str | None = None
     futures_quality: float = 0.5
+    reactions: str | None = None
     folder: str | None = None
 
     def contradictions(self) -> Iterator[str]:
         """What these values break."""
-        for name in ("predictor", "classifier", "sampler", "folder"):
+        for name in ("predictor", "classifier", "sampler", "reactions", "folder"):
             yield from unless(getattr(self, name) != "", f"{name} must name a folder")
         yield from unless(
             1 <= self.futures <= MOST_FUTURES, f"futures must lie in 1..{MOST_FUTURES}"

@@ -19,6 +19,18 @@ class Step:
     duration_s: float
 
 
+class Motion(StrEnum):
+    """How the agent moves when it carries out a command.
+
+    Attributes:
+        AUTHORED: As its renderer has it for each step.
+        GENERATED: As a model makes it while it plays; where it makes nothing, as authored.
+    """
+
+    AUTHORED = "authored"
+    GENERATED = "generated"
+
+
 @dataclass(frozen=True, slots=True)
 class Command:
     """An order to the renderer, carried out once.
@@ -35,6 +47,7 @@ class Command:
         originating_ns: Capture time of the last frame that led to it.
         issued_ns: When it was decided, on the session's time line.
         ttl_ms: For how long it is worth starting.
+        motion: How the agent moves.
     """
 
     id: str
@@ -47,6 +60,7 @@ class Command:
     originating_ns: int
     issued_ns: int
     ttl_ms: int
+    motion: Motion = Motion.AUTHORED
 
     @property
     def duration_s(self) -> float:

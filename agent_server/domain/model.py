@@ -1,8 +1,10 @@
 """What the stages need of a model. The real ones run on onnxruntime; tests bring small fakes."""
 
+from collections.abc import Iterator
 from typing import Protocol
 
 from agent_server.domain.arrays import Float32
+from agent_server.domain.reaction import TrainingRange
 
 
 class Model(Protocol):
@@ -50,6 +52,46 @@ class Sampler(Model, Protocol):
         Returns:
             Futures, shape (K, 50, 9, 3), in the same frame, and how probably each is a real
             motion, shape (K,), in [0, 1].
+
+        Raises:
+            InferenceError: If the model fails or gives something that is not finite.
+        """
+        ...
+
+
+class Reactor(Model, Protocol):
+    """Makes one person's reaction to what another one does, pose by pose."""
+
+    @property
+    def range(self) -> TrainingRange:
+        """What it was trained on."""
+        ...
+
+    @property
+    def rate_hz(self) -> int:
+        """Frames a second."""
+        ...
+
+    @property
+    def frames(self) -> int:
+        """Longest action that it reads."""
+        ...
+
+    @property
+    def latent(self) -> int:
+        """How many numbers of noise it takes."""
+        ...
+
+    def react(self, action: Float32, first: Float32, noise: Float32) -> Iterator[Float32]:
+        """Make a reaction until the action or the reaction is over.
+
+        Args:
+            action: Shape (S, 15, 3), metres, in the frame of the pair.
+            first: Shape (15, 3), likewise: how the reaction begins, the first pose given.
+            noise: Shape (latent,).
+
+        Yields:
+            Poses of shape (15, 3), in the same frame.
 
         Raises:
             InferenceError: If the model fails or gives something that is not finite.

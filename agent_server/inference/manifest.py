@@ -10,6 +10,7 @@ from typing import Any, Literal, TypeVar, overload
 
 import msgspec
 
+from agent_server.domain.reaction import TrainingRange
 from agent_server.errors import BundleError
 
 FORMAT_VERSION = 1
@@ -151,6 +152,7 @@ class ReactionManifest(Manifest, frozen=True):
         latent: Size of the noise.
         labels: What the people of the training set do.
         training: How it was made.
+        range: What the reactions of the training set are like.
     """
 
     task: Literal["react"]
@@ -160,6 +162,7 @@ class ReactionManifest(Manifest, frozen=True):
     latent: int
     labels: list[str]
     training: Training
+    range: TrainingRange
 
 
 class _Task(msgspec.Struct, frozen=True):

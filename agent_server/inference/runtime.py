@@ -28,8 +28,50 @@ GOLDEN_TOLERANCE = 1e-3
 the largest value of an output where that is over 1, as with landmarks in pixels."""
 
 
+class Session:
+    """A graph that runs on one thread, which does not spin.
+
+    Args:
+        path: The graph.
+        name: What errors call it.
+
+    Raises:
+        BundleError: If it cannot be loaded.
+    """
+
+    def __init__(self, path: Path, name: str) -> None:
+        self._name = name
+        options = ort.SessionOptions()
+        options.intra_op_num_threads = 1
+        options.inter_op_num_threads = 1
+        options.log_severity_level = 3
+        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+        try:
+            self._session = ort.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+        except Exception as error:  # onnxruntime has no common base of its errors
+            raise BundleError(f"{path} cannot be loaded: {error}") from error
+        self.inputs: list[str] = [given.name for given in self._session.get_inputs()]
+        self.outputs: list[str] = [output.name for output in self._session.get_outputs()]
+
+    def run(self, *given: NDArray[Any]) -> list[Float32]:
+        """All outputs for all inputs, both in the graph's order.
+
+        Raises:
+            InferenceError: If onnxruntime fails or a result is not finite.
+        """
+        feed = dict(zip(self.inputs, given, strict=True))
+        try:
+            results: list[Float32] = self._session.run(self.outputs, feed)
+        except Exception as error:  # onnxruntime has no common base of its errors
+            raise InferenceError(f"{self._name} failed: {error}") from error
+        # NaN and infinity survive a sum, and a sum is cheaper than a look at each value.
+        if not all(np.isfinite(result.sum()) for result in results):
+            raise InferenceError(f"{self._name} gave a result that is not finite")
+        return results
+
+
 class OnnxModel(Generic[KindOfManifest]):
-    """A checked bundle with a running session: one thread, no spinning.
+    """A checked bundle with a running session.
 
     Args:
         folder: The bundle.
@@ -50,19 +92,7 @@ class OnnxModel(Generic[KindOfManifest]):
             )
         self.manifest: KindOfManifest = read_manifest(folder, kind)
         self._check(folder)
-        options = ort.SessionOptions()
-        options.intra_op_num_threads = 1
-        options.inter_op_num_threads = 1
-        options.log_severity_level = 3
-        options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-        try:
-            self._session = ort.InferenceSession(
-                folder / MODEL_FILE, options, providers=["CPUExecutionProvider"]
-            )
-        except Exception as error:  # onnxruntime has no common base of its errors
-            raise BundleError(f"{folder / MODEL_FILE} cannot be loaded: {error}") from error
-        self._inputs: list[str] = [given.name for given in self._session.get_inputs()]
-        self._outputs: list[str] = [output.name for output in self._session.get_outputs()]
+        self._session = Session(folder / MODEL_FILE, self.name)
         self._replay_golden(folder / GOLDEN_FILE)
 
     @property
@@ -85,30 +115,21 @@ class OnnxModel(Generic[KindOfManifest]):
             InferenceError: If onnxruntime fails or a result is not finite.
         """
         if self.manifest.batch_exact or len(batch) == 1:
-            return self._run(batch)[0]
-        return np.concatenate([self._run(batch[i : i + 1])[0] for i in range(len(batch))])
-
-    def _run(self, *given: NDArray[Any]) -> list[Float32]:
-        """All outputs for all inputs, both in the graph's order."""
-        feed = dict(zip(self._inputs, given, strict=True))
-        try:
-            results: list[Float32] = self._session.run(self._outputs, feed)
-        except Exception as error:  # onnxruntime has no common base of its errors
-            raise InferenceError(f"{self.name} failed: {error}") from error
-        # NaN and infinity survive a sum, and a sum is cheaper than a look at each value.
-        if not all(np.isfinite(result.sum()) for result in results):
-            raise InferenceError(f"{self.name} gave a result that is not finite")
-        return results
+            return self._session.run(batch)[0]
+        return np.concatenate([self._session.run(batch[i : i + 1])[0] for i in range(len(batch))])
 
     def _replay_golden(self, path: Path) -> None:
         try:
             with np.load(path, allow_pickle=False) as golden:
-                given = [golden[name] for name in self._inputs]
-                expected = [golden[name] for name in self._outputs]
+                given = [golden[name] for name in self._session.inputs]
+                expected = [golden[name] for name in self._session.outputs]
         except (OSError, KeyError, ValueError) as error:
             raise BundleError(f"{path} cannot be read: {error}") from error
         try:
-            rows = [self._run(*(each[i : i + 1] for each in given)) for i in range(len(given[0]))]
+            rows = [
+                self._session.run(*(each[i : i + 1] for each in given))
+                for i in range(len(given[0]))
+            ]
         except InferenceError as error:
             raise BundleError(
                 f"{path}: the model does not run on its golden input: {error}"
@@ -187,7 +208,7 @@ class OnnxSampler(_MotionModel):
     def draw(self, seen: Float32, count: int) -> tuple[Float32, Float32]:
         """Futures of one window (25, 9, 3), in one batch, and the quality of each."""
         batch = np.repeat(seen[None], count, axis=0)
-        future, quality = self._run(batch, np.arange(count))
+        future, quality = self._session.run(batch, np.arange(count))
         return future, quality
 
 
@@ -233,7 +254,7 @@ class OnnxFaceNetwork(OnnxModel[FaceManifest]):
 
     def run(self, given: Float32) -> dict[str, Float32]:
         """Run the network: one input, outputs by name."""
-        return dict(zip(self._outputs, self._run(given), strict=True))
+        return dict(zip(self._session.outputs, self._session.run(given), strict=True))
 
 
 class OnnxAffect(OnnxModel[AffectManifest]):

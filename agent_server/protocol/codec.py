@@ -10,6 +10,7 @@ import msgspec
 
 from agent_server.domain.stamp import MAX_STAMP_NS
 from agent_server.errors import InvalidInput
+from agent_server.protocol.convert import pack_pose_stream
 from agent_server.protocol.messages import (
     SUBPROTOCOL_JSON,
     SUBPROTOCOL_MSGPACK,
@@ -18,6 +19,7 @@ from agent_server.protocol.messages import (
     Message,
     PackedClientMessage,
     PackedServerMessage,
+    PoseStreamMessage,
     ServerMessage,
 )
 
@@ -93,7 +95,9 @@ class MsgpackCodec:
         self._server = msgspec.msgpack.Decoder(PackedServerMessage)
 
     def encode(self, message: Message) -> bytes:
-        """One message as MessagePack."""
+        """One message as MessagePack, the positions of a motion packed."""
+        if isinstance(message, PoseStreamMessage):
+            message = pack_pose_stream(message)
         return self._encoder.encode(message)
 
     def decode_client(self, data: Wire) -> Message:

@@ -187,6 +187,7 @@ ERROR_CODES: tuple[ErrorCode, ...] = (
     ErrorCode("face_failed", "telemetry: an image was not read", "the next one may be"),
     ErrorCode("face_skew", "telemetry: body and face too far apart", "one clock, more faces"),
     ErrorCode("clock_jump", "telemetry: a client's clock jumped", "use a monotonic clock"),
+    ErrorCode("reaction_refused", "telemetry: a generated motion is no good", "authored plays"),
     ErrorCode("recording_failed", "telemetry: nothing is recorded any more", "see to the disk"),
     ErrorCode("forecast_drift", "telemetry: forecasts are worse than none", "see to the sensor"),
     ErrorCode("scene_differs", "telemetry: renderer and room did not agree", "see differences"),

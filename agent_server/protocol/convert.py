@@ -12,12 +12,14 @@ from agent_server.domain.arrays import Float32, Float64
 from agent_server.domain.command import Ack, AckStatus, Command
 from agent_server.domain.decision import Decision, SceneVerdict
 from agent_server.domain.gesture import Spread
-from agent_server.domain.motion import Forecast, ForecastFigures, Futures
+from agent_server.domain.motion import RATE_HZ, Forecast, ForecastFigures, Futures
+from agent_server.domain.reaction import Stretch
 from agent_server.domain.scene import SceneSnapshot
 from agent_server.domain.skeleton import CoreFrame, SkeletonFrame
 from agent_server.errors import InvalidInput
 from agent_server.protocol import messages as m
 from agent_server.skeleton.formats import get_format
+from agent_server.skeleton.pair import JOINT_NAMES
 
 JOINT_DECIMALS = 4
 """Joints are rounded to this many decimals of their unit (0.1 mm of metres) before anything
@@ -169,6 +171,7 @@ def command_body(command: Command) -> m.CommandBody:
         originating_ns=command.originating_ns,
         issued_ns=command.issued_ns,
         ttl_ms=command.ttl_ms,
+        motion=command.motion.value,
     )
 
 
@@ -193,6 +196,34 @@ def command_message(command: Command, epoch: str, server_ns: int) -> m.CommandMe
         ttl_ms=command.ttl_ms,
         preempts=command.preempts,
         server_ns=server_ns,
+        motion=command.motion.value,
+    )
+
+
+def pose_stream_message(command_id: str, stretch: Stretch) -> m.PoseStreamMessage:
+    """A stretch of a generated motion for a renderer, rounded to a tenth of a millimetre."""
+    return m.PoseStreamMessage(
+        command_id,
+        stretch.first_frame,
+        float(RATE_HZ),
+        list(JOINT_NAMES),
+        stretch.positions.astype(np.float64).round(JOINT_DECIMALS).tolist(),
+        stretch.is_last,
+        stretch.refused,
+    )
+
+
+def pack_pose_stream(message: m.PoseStreamMessage) -> m.PackedPoseStreamMessage:
+    """A JSON-coded stretch as a MessagePack-coded one."""
+    flat = tuple(chain.from_iterable(chain.from_iterable(message.positions)))
+    return m.PackedPoseStreamMessage(
+        message.command_id,
+        message.first_frame,
+        message.rate_hz,
+        message.joints,
+        struct.pack(f"<{len(flat)}f", *flat),
+        message.is_last,
+        message.fallback,
     )
 
 

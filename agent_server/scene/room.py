@@ -8,7 +8,7 @@ same commands, no matter how often :meth:`Room.advance` is called.
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from agent_server.domain.command import Ack, AckStatus, Command, CommandEnd, Ending
+from agent_server.domain.command import Ack, AckStatus, Command, CommandEnd, Ending, Motion
 from agent_server.domain.decision import Outcome, SceneVerdict
 from agent_server.domain.motion import BodyLost
 from agent_server.domain.scene import (
@@ -229,7 +229,7 @@ class Room:
         else:
             outcome = Outcome.COMMAND
             cut = self._running.reaction.name if self._running else None
-            command = self._start(rule.reaction, gesture, originating_ns)
+            command = self._start(rule.reaction, gesture, originating_ns, rule.motion)
             reason = f"cuts short {cut}" if cut else "nothing in the way"
         shown = rule or next(iter(rules), None)
         verdict = SceneVerdict(
@@ -336,7 +336,13 @@ class Room:
             return None
         return running.name
 
-    def _start(self, reaction: Reaction, cause: str, originating_ns: int) -> Command:
+    def _start(
+        self,
+        reaction: Reaction,
+        cause: str,
+        originating_ns: int,
+        motion: Motion = Motion.AUTHORED,
+    ) -> Command:
         self._sequence += 1
         command = Command(
             id=f"{self._session_id}/c{self._sequence}",
@@ -349,6 +355,7 @@ class Room:
             originating_ns=originating_ns,
             issued_ns=self._now_ns,
             ttl_ms=reaction.ttl_ms,
+            motion=motion,
         )
         if self._running is not None:
             self._endings.append(Ending(self._running.command.id, CommandEnd.PREEMPTED))

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from agent_server.domain.command import Step
+from agent_server.domain.command import Motion, Step
 from agent_server.domain.scene import AgentMode, Authority
 
 RESUME_WORK = "resume_work"
@@ -81,12 +81,14 @@ class Rule:
         when: States that must all hold; empty if it always applies.
         reaction: What follows.
         preempts: Names of running reactions that it cuts short whatever their priority.
+        motion: How the agent moves in it.
     """
 
     gesture: str
     when: tuple[Condition, ...]
     reaction: Reaction
     preempts: frozenset[str]
+    motion: Motion = Motion.AUTHORED
 
     @property
     def name(self) -> str:

@@ -6,7 +6,7 @@ from functools import partial
 from importlib import resources
 from pathlib import Path
 
-from agent_server.domain.command import Step
+from agent_server.domain.command import Motion, Step
 from agent_server.domain.gesture import GESTURES, IDLE
 from agent_server.domain.scene import AgentMode, Authority
 from agent_server.domain.stamp import NS_PER_MS, to_ns
@@ -40,12 +40,15 @@ def default_rules(known_gestures: Collection[str] = GESTURES) -> Rules:
     return parse_rules(text, known_gestures, name="room.toml")
 
 
-def load_rules(path: Path, known_gestures: Collection[str] = GESTURES) -> Rules:
+def load_rules(
+    path: Path, known_gestures: Collection[str] = GESTURES, *, generates: bool = False
+) -> Rules:
     """Read a rule file.
 
     Args:
         path: A TOML file in UTF-8.
         known_gestures: Labels of the classifier in use; a rule may name no others.
+        generates: Whether there is a model that makes reactions; without one no rule asks for it.
 
     Raises:
         RuleError: If it cannot be read or something in it is wrong.
@@ -58,16 +61,23 @@ def load_rules(path: Path, known_gestures: Collection[str] = GESTURES) -> Rules:
         raise RuleError(
             f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8"
         ) from error
-    return parse_rules(text, known_gestures, name=str(path))
+    return parse_rules(text, known_gestures, name=str(path), generates=generates)
 
 
-def parse_rules(text: str, known_gestures: Collection[str] = GESTURES, *, name: str) -> Rules:
+def parse_rules(
+    text: str,
+    known_gestures: Collection[str] = GESTURES,
+    *,
+    name: str,
+    generates: bool = False,
+) -> Rules:
     """Check the text of a rule file.
 
     Args:
         text: The TOML document.
         known_gestures: Labels of the classifier in use; a rule may name no others.
         name: What messages call the file.
+        generates: Whether there is a model that makes reactions; without one no rule asks for it.
 
     Raises:
         RuleError: On the first mistake: ``NAME:LINE: what is wrong; the way out``.
@@ -95,7 +105,7 @@ def parse_rules(text: str, known_gestures: Collection[str] = GESTURES, *, name: 
         ungated=_known_texts(settings, "ungated", "gesture", _gestures(known_gestures)),
         objects=objects,
         reactions=reactions,
-        rules=_rules(root, known_gestures, reactions, room),
+        rules=_rules(root, known_gestures, reactions, room, generates=generates),
         idle=_idle(root, room),
     )
 
@@ -194,13 +204,18 @@ def _reaction(name: str, table: Table, room: _Room) -> Reaction:
 
 
 def _rules(
-    root: Table, known_gestures: Collection[str], reactions: Mapping[str, Reaction], room: _Room
+    root: Table,
+    known_gestures: Collection[str],
+    reactions: Mapping[str, Reaction],
+    room: _Room,
+    *,
+    generates: bool,
 ) -> dict[str, tuple[Rule, ...]]:
     gestures = _gestures(known_gestures)
     triggered = reactions.keys() - {RESUME_WORK}
     rules: dict[str, tuple[Rule, ...]] = {}
     for table in root.tables("rules"):
-        table.only("gesture", "when", "reaction", "preempts")
+        table.only("gesture", "when", "reaction", "preempts", "motion")
         gesture = _known(table, "gesture", "gesture", gestures)
         if table.text("reaction") == RESUME_WORK:
             raise table.error(
@@ -211,7 +226,15 @@ def _rules(
             when=room.conditions(table.table("when", required=False)),
             reaction=reactions[_known(table, "reaction", "reaction", triggered)],
             preempts=_known_texts(table, "preempts", "reaction", triggered),
+            motion=_motion(table),
         )
+        if rule.motion is Motion.GENERATED and not generates:
+            raise table.error(
+                "motion",
+                f"{rule.name} asks for a generated motion, and no model makes one",
+                "name a bundle that reacts, reactions = 'FOLDER' in [models] of the settings, or "
+                f'write motion = "{Motion.AUTHORED}"',
+            )
         earlier = rules.get(gesture, ())
         for other in earlier:
             if set(other.when) <= set(rule.when):
@@ -223,6 +246,12 @@ def _rules(
                 )
         rules[gesture] = (*earlier, rule)
     return rules
+
+
+def _motion(table: Table) -> Motion:
+    if "motion" not in table:
+        return Motion.AUTHORED
+    return Motion(_known(table, "motion", "motion", list(Motion)))
 
 
 def _gestures(known_gestures: Collection[str]) -> list[str]:

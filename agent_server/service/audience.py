@@ -45,6 +45,8 @@ class Client:
         )
 
 
+POSE_STREAM = "pose_stream"
+"""Capability of a renderer that plays motion which is made while it plays."""
 LEFT_OUT_FIRST: frozenset[m.Topic] = frozenset(("pose", "forecast", "affect", "stats"))
 """Telemetry that nobody is told while the server is loaded: the next of it makes it up."""
 
@@ -98,6 +100,21 @@ class Audience:
         for client in self.having("monitor"):
             if client.wants(topic):
                 client.outbox.skip(topic)
+
+    @property
+    def wants_motion(self) -> bool:
+        """Whether any renderer plays motion that is made while it plays."""
+        return any(POSE_STREAM in client.hello.capabilities for client in self.having("renderer"))
+
+    def move(self, stretch: m.PoseStreamMessage) -> None:
+        """Give a stretch of a motion to the renderers that play it.
+
+        Of the stretches that wait for one that is slow, a newer command's take the place of an
+        older one's.
+        """
+        for client in self.having("renderer"):
+            if POSE_STREAM in client.hello.capabilities:
+                client.outbox.update(f"pose_stream {stretch.first_frame}", stretch)
 
     def show_scene(self, scene: m.SceneState) -> None:
         """Give the room's state to monitors and renderers."""

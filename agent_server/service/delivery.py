@@ -17,6 +17,7 @@ from agent_server.protocol import messages as m
 from agent_server.recording.records import RendererChanged, Restored
 from agent_server.service.audience import Client
 from agent_server.service.context import Context
+from agent_server.service.reactions import Reactions
 from agent_server.service.store import Saved, SessionStore
 
 log = logging.getLogger(__name__)
@@ -31,14 +32,22 @@ class Delivery:
         ledger: Within it, an id means one command for good.
         epoch: Changes with every opening of the session.
         resume_ns: How long a renderer whose connection broke keeps its place.
+        reactions: What makes the motion of commands that ask for it.
     """
 
     def __init__(
-        self, context: Context, store: SessionStore, ledger: str, epoch: str, resume_ns: int
+        self,
+        context: Context,
+        store: SessionStore,
+        ledger: str,
+        epoch: str,
+        resume_ns: int,
+        reactions: Reactions,
     ) -> None:
         self._context = context
         self._store = store
         self._resume_ns = resume_ns
+        self._reactions = reactions
         self.ledger = ledger
         self.epoch = epoch
         self.sequence = 0
@@ -178,6 +187,7 @@ class Delivery:
         """Write down and send commands, and the room and what has ended where that has changed."""
         context = self._context
         decided_ns = context.clock.now_ns()
+        commands = tuple(commands)
         messages = [convert.command_message(one, self.epoch, decided_ns) for one in commands]
         scene = self.scene()
         if messages:
@@ -189,6 +199,8 @@ class Delivery:
             context.counters["commands"] += 1
             context.audience.order(message)
             context.journal.append_output(message, message.issued_ns)
+        for command in commands:
+            self._reactions.begin(command)
         if scene != self._shown:
             self._shown = scene
             context.audience.show_scene(scene)
@@ -199,6 +211,7 @@ class Delivery:
         """Say how commands ended of which the renderer did not say it itself."""
         for ending in self._context.core.take_endings():
             self._context.counters[f"commands_{ending.end}"] += 1
+            self._reactions.end(ending.command_id)
             if ending.end not in (CommandEnd.DONE, CommandEnd.FAILED):
                 told = m.AckTelemetry(ending.command_id, ending.end.value)
                 self._context.audience.show("ack", told, ending.command_id)

@@ -9,6 +9,7 @@ from agent_server.domain.model import (
     FaceNetwork,
     Model,
     Predictor,
+    Reactor,
     Sampler,
 )
 
@@ -46,6 +47,7 @@ class Models:
         affect: What a face is given as (``mesh``, ``points68``, ``blendshapes``) -> its model.
         face: Networks for images, or None where images are not taken.
         drawing: How futures are drawn beside the forecast, or None where it is alone.
+        reactor: Makes reactions for rules that ask for it, or None.
     """
 
     predictor: Predictor
@@ -53,6 +55,7 @@ class Models:
     affect: Mapping[str, AffectModel] = field(default_factory=dict)
     face: FaceNetworks | None = None
     drawing: Drawing | None = None
+    reactor: Reactor | None = None
 
     @property
     def by_task(self) -> tuple[tuple[str, Model], ...]:
@@ -63,12 +66,16 @@ class Models:
         drawing: tuple[tuple[str, Model], ...] = ()
         if self.drawing is not None:
             drawing = (("futures", self.drawing.sampler),)
+        reactor: tuple[tuple[str, Model], ...] = ()
+        if self.reactor is not None:
+            reactor = (("react", self.reactor),)
         return (
             ("predict", self.predictor),
             *drawing,
             ("classify", self.classifier),
             *(("affect", model) for model in self.affect.values()),
             *faces,
+            *reactor,
         )
 
     @property

@@ -25,6 +25,7 @@ from agent_server.service.delivery import Delivery
 from agent_server.service.face_reading import FaceReading
 from agent_server.service.journal import Journal
 from agent_server.service.load import Load, LoadGauge
+from agent_server.service.reactions import Reactions
 from agent_server.service.sensing import Sensing
 from agent_server.service.store import Saved, SessionStore
 from agent_server.service.telling import Telling
@@ -107,8 +108,14 @@ class Session:
         self.audience = self._context.audience
         self.counters = self._context.counters
         self.recent: deque[Decided] = deque(maxlen=RECENT)
+        self._reactions = Reactions(self._context, worker)
         self.delivery = Delivery(
-            self._context, store, opening.ledger, opening.epoch, to_ns(settings.server.resume_s)
+            self._context,
+            store,
+            opening.ledger,
+            opening.epoch,
+            to_ns(settings.server.resume_s),
+            self._reactions,
         )
         camera = None if eyes is None else Camera(eyes)
         self._faces = FaceReading(self._context, worker)
@@ -193,6 +200,7 @@ class Session:
             group.create_task(self._work(), name=f"{self.id}: jobs")
             group.create_task(self._tick(), name=f"{self.id}: ticks")
             group.create_task(self._sensing.see(), name=f"{self.id}: images")
+            group.create_task(self._reactions.run(), name=f"{self.id}: reactions")
             group.create_task(self._faces.run(), name=f"{self.id}: faces")
 
     @property
@@ -248,6 +256,7 @@ class Session:
         begin_ns = self._clock.now_ns()
         result = self._core.decide(pending, inference.forecast, inference.classification)
         end_ns = self._clock.now_ns()
+        self._reactions.see(window, inference.forecast)
         self.delivery.deliver(result.commands, window.end_ns)
         failure = inference.forecast.failure
         self._journal.append_core(WindowDone(window.end_ns, window.index, failure))

@@ -9,6 +9,7 @@ from agent_server.protocol import convert
 from agent_server.scene.rulebook import Rules
 from agent_server.service.core import Core, PendingWindow
 from agent_server.service.worker import InferenceWorker
+from agent_server.stages.react import react
 
 RATE_HZ = 30
 SECONDS = 2
@@ -46,4 +47,9 @@ async def warm_up(worker: InferenceWorker, settings: Settings, rules: Rules) -> 
                 result = core.decide(job, inference.forecast, inference.classification)
                 convert.decision_body(result.decision)
                 decisions += 1
+                reactor = worker.models.reactor
+                if reactor is not None and decisions == 1:
+                    making = react(reactor, job.window, inference.forecast, seed="warm-up")
+                    while not (await worker.go_on(making)).is_last:
+                        pass
     return decisions

@@ -5,20 +5,28 @@ is the bundle's to say (``batch_exact``), so that a decision never depends on wh
 """
 
 import asyncio
+import logging
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from agent_server.domain.arrays import Float64
 from agent_server.domain.face import Face
 from agent_server.domain.gesture import Classification
 from agent_server.domain.motion import Forecast, Window
+from agent_server.domain.reaction import Stretch
 from agent_server.service.batcher import Batcher
 from agent_server.service.models import Models
 from agent_server.stages.affect import read_affect
 from agent_server.stages.classify import classify
 from agent_server.stages.futures import draw_futures
 from agent_server.stages.predict import predict
+from agent_server.stages.react import broken_off
+
+log = logging.getLogger(__name__)
+
+MOST_REACTIONS = 16
+"""So many reactions may wait for their next stretch; what comes beyond is not made."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +72,7 @@ def infer(models: Models, windows: Sequence[Window]) -> list[Inference]:
 
 
 class InferenceWorker:
-    """Two threads that run the models for everybody: one what decides, one what reads faces.
+    """Threads that run the models for everybody: what decides, reads faces, makes reactions.
 
     Args:
         models: The models.
@@ -73,6 +81,7 @@ class InferenceWorker:
         models: The models of the batches to come.
         windows: Where windows wait.
         faces: Where faces wait.
+        reactions: Where reactions wait for their next stretch.
     """
 
     def __init__(self, models: Models) -> None:
@@ -82,6 +91,9 @@ class InferenceWorker:
         )
         self.faces = Batcher[Face, Float64](
             "affect", lambda faces: read_affect(self.models.affect, faces)
+        )
+        self.reactions = Batcher[Iterator[Stretch], Stretch](
+            "reactions", lambda makings: list(map(_next_stretch, makings))
         )
 
     @property
@@ -106,8 +118,23 @@ class InferenceWorker:
         """
         return self.faces.ask(face)
 
+    async def go_on(self, making: Iterator[Stretch]) -> Stretch:
+        """The next stretch of a reaction, when its thread is free."""
+        if self.reactions.waiting >= MOST_REACTIONS:
+            return broken_off(f"{MOST_REACTIONS} reactions are being made already")
+        return await self.reactions.ask(making)
+
     async def run(self) -> None:
         """Serve requests until cancelled."""
         async with asyncio.TaskGroup() as group:
             group.create_task(self.windows.run(), name="inference of windows")
             group.create_task(self.faces.run(), name="inference of faces")
+            group.create_task(self.reactions.run(), name="inference of reactions")
+
+
+def _next_stretch(making: Iterator[Stretch]) -> Stretch:
+    try:
+        return next(making)
+    except Exception as error:  # whatever a model does, the other reactions go on
+        log.exception("a model failed in a way that it should not")
+        return broken_off(f"a model failed: {error!r}")

@@ -18,6 +18,7 @@ from agent_server.domain.motion import CLASSIFIED_FRAMES, RATE_HZ, SEEN_FRAMES, 
 from agent_server.domain.reaction import Stretch, TrainingRange
 from agent_server.errors import InferenceError
 from agent_server.skeleton.pair import (
+    ARMS,
     TORSO,
     UPPER_BODY,
     as_action,
@@ -79,6 +80,11 @@ def react(reactor: Reactor, window: Window, forecast: Forecast, seed: str) -> It
     yield stretch(len(waiting), is_last=True)
 
 
+def broken_off(reason: str) -> Stretch:
+    """A stretch without frames: nothing more comes, for a reason in words."""
+    return Stretch(0, NO_FRAMES, is_last=True, refused=reason)
+
+
 def noise_of(seed: str, size: int) -> Float32:
     """Normal noise that a text alone decides on, shape (size,)."""
     number = int.from_bytes(hashlib.sha256(seed.encode()).digest(), "big")
@@ -111,29 +117,25 @@ class Doubt:
         self._rate_hz = rate_hz
         bones = bone_vectors(np.array(known.reaction, np.float32))[:UPPER_BONES]
         self._lengths = np.linalg.norm(bones, axis=-1)
-        self._reach = np.array(known.reach_m) + 1e-6
         self._before: list[Float32] = []
 
     def push(self, pose: Float32) -> str | None:
         """Why the motion is not to be believed from this pose (15, 3) on; None if it is."""
         known, rate = self._known, self._rate_hz
-        upper = pose[:UPPER_BODY]
-        self._before = [*self._before[-2:], upper]
+        self._before = [*self._before[-2:], pose[:UPPER_BODY]]
         bones = np.linalg.norm(bone_vectors(pose)[:UPPER_BONES], axis=-1)
-        found = [
-            ("bone length off by", float(np.abs(bones / self._lengths - 1).max()), known.bone, ""),
-            ("speed", self._largest(1) * rate, known.speed_m_s, " m/s"),
-            ("acceleration", self._largest(2) * rate**2, known.acceleration_m_s2, " m/s2"),
-            (
-                "distance from the torso, of the known one,",
-                float((np.linalg.norm(upper - upper[TORSO], axis=-1) / self._reach)[1:].max()),
-                1.0,
-                "",
+        reach = np.linalg.norm(pose[ARMS,] - pose[TORSO], axis=-1)
+        shares = {
+            "a bone is too long or short": (np.abs(bones / self._lengths - 1) / known.bones).max(),
+            "an arm reaches too far": (reach / known.reach_m).max(),
+            "a joint is too fast": self._largest(1) * rate / known.speed_m_s,
+            "a joint changes its speed too fast": (
+                self._largest(2) * rate**2 / known.acceleration_m_s2
             ),
-        ]
-        for what, value, limit, unit in found:
-            if not value <= limit:
-                return f"{what} {value:.2f}{unit} is more than {limit:.2f}{unit} in training"
+        }
+        for sentence, share in shares.items():
+            if not share <= 1:
+                return f"{sentence}: {share:.2f} times the limit of the training set"
         return None
 
     def _largest(self, order: int) -> float:

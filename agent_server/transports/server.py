@@ -20,6 +20,7 @@ from agent_server import assets
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
 from agent_server.errors import BundleError, ConfigError, RuleError
+from agent_server.inference.reactor import OnnxReactor
 from agent_server.inference.runtime import (
     OnnxAffect,
     OnnxClassifier,
@@ -78,6 +79,7 @@ def load_models(settings: Settings | None = None) -> Models:
             OnnxFaceNetwork(shipped / DETECTOR, "detector"), OnnxFaceNetwork(shipped / mesh, "mesh")
         ),
         drawing,
+        None if chosen.reactions is None else OnnxReactor(Path(chosen.reactions)),
     )
 
 
@@ -140,12 +142,14 @@ def load_room(settings: Settings, models: Models) -> Rules:
     """Read the room's rules for the gestures that the classifier knows.
 
     Raises:
-        RuleError: If the rule file is wrong, or there is none and the room that ships reacts to
-            gestures that the classifier does not know.
+        RuleError: If the rule file is wrong, a rule asks for a generated motion and no model
+            makes one, or there is no file and the room that ships reacts to gestures that the
+            classifier does not know.
     """
     known = models.classifier.labels
     if settings.rules is not None:
-        return load_rules(Path(settings.rules), known)
+        generates = models.reactor is not None
+        return load_rules(Path(settings.rules), known, generates=generates)
     try:
         return default_rules(known)
     except RuleError as error:

@@ -27,6 +27,7 @@ from models.evaluation.latency import reaction_latency
 from models.export.bundle import RESEARCH_LICENCE
 from models.export.onnx import OPSET, TOLERANCE, write_graph
 from models.export.reaction_card import reaction_card
+from models.export.reaction_range import training_range
 from models.interformer.generator.generate import Encode, Step, TorchCore, generate
 from models.interformer.generator.network import Generator
 from models.interformer.generator.onnx_core import (
@@ -103,6 +104,7 @@ def export_reaction(
                 hardware=info["hardware"],
             ),
             results=results,
+            range=training_range(spec.read(data, "train"), spec.rate_hz),
         )
         (draft / CARD_FILE).write_text(reaction_card(manifest))
         write_manifest(draft, manifest)

@@ -61,6 +61,7 @@ Topic = Literal[
     "stats",
     "error",
 ]
+Motion = Literal["authored", "generated"]
 AckStatus = Literal["accepted", "started", "progress", "done", "failed"]
 CommandEnd = Literal["done", "failed", "expired", "preempted", "timed_out", "assumed"]
 Authority = Literal["server", "renderer"]

@@ -12,6 +12,7 @@ from agent_server.protocol.messages.fields import (
     Label,
     Level,
     Message,
+    Motion,
     Name,
     Nanoseconds,
     Part,
@@ -148,13 +149,21 @@ class CommandMessage(Message, frozen=True, tag="command"):
     server_ns: Annotated[
         Nanoseconds, told("The server's monotonic clock when it was decided, as in pongs.")
     ] = 0
+    motion: Annotated[
+        Motion,
+        told(
+            "`generated`: for a renderer with the capability `pose_stream` a motion follows that "
+            "is made while it plays; until it comes, and after it, the steps look as authored."
+        ),
+    ] = "authored"
 
 
 class PoseStreamMessage(Message, frozen=True, tag="pose_stream"):
     """A stretch of a generated motion for the agent to play (JSON coding).
 
-    Reserved: this version of the server sends none. A renderer without the capability
-    ``pose_stream`` never gets one. Frames of a command come in order and without gaps.
+    A renderer without the capability ``pose_stream`` never gets one. Frames of a command come in
+    order and without gaps; where one is missing, nothing more is to be played. The authored motion
+    stands in before the first stretch, after the last, and where none comes.
     """
 
     command_id: Annotated[CommandId, told("Command that the motion belongs to.")]
@@ -170,6 +179,10 @@ class PoseStreamMessage(Message, frozen=True, tag="pose_stream"):
         ),
     ]
     is_last: Annotated[bool, told("Whether the motion ends with this stretch.")] = False
+    fallback: (
+        Annotated[str, told("Why nothing more of it is good: the authored motion stands in.")]
+        | None
+    ) = None
 
 
 class PackedPoseStreamMessage(Message, frozen=True, tag="pose_stream"):
@@ -189,6 +202,10 @@ class PackedPoseStreamMessage(Message, frozen=True, tag="pose_stream"):
         ),
     ]
     is_last: Annotated[bool, told("Whether the motion ends with this stretch.")] = False
+    fallback: (
+        Annotated[str, told("Why nothing more of it is good: the authored motion stands in.")]
+        | None
+    ) = None
 
 
 class Missed(Message, frozen=True, tag="missed"):

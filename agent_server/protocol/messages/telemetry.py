@@ -16,6 +16,7 @@ from agent_server.protocol.messages.fields import (
     Level,
     Message,
     Milliseconds,
+    Motion,
     Name,
     Nanoseconds,
     Part,
@@ -159,7 +160,7 @@ class SceneBody(Part, frozen=True):
     reason: Annotated[str, told("Why, in a few words.")]
 
 
-class CommandBody(Part, frozen=True):
+class CommandBody(Part, frozen=True, omit_defaults=True):
     """The command in a decision, without what only its delivery knows."""
 
     id: Annotated[CommandId, told("Identity.")]
@@ -175,6 +176,7 @@ class CommandBody(Part, frozen=True):
         int,
         told("It is not to be started later than this after it was issued.", "ms", ge=0, le=10**12),
     ]
+    motion: Annotated[Motion, told("How the agent moves: as authored, or generated.")] = "authored"
 
 
 class FuturesBody(Part, frozen=True):

@@ -27,6 +27,7 @@ CHOICES = (
     ("Topic", get_args(fields.Topic), "A kind of telemetry."),
     ("AckStatus", get_args(fields.AckStatus), "What became of a command."),
     ("Authority", get_args(fields.Authority), "Whose word holds."),
+    ("Motion", get_args(fields.Motion), "How the agent moves."),
 )
 """What each choice between texts is called, its texts in order, and what it is for."""
 CHOICE_NAMES = {frozenset(values): name for name, values, _ in CHOICES}

@@ -33,6 +33,7 @@ CHOICES = {
     "AckStatus": (get_args(fields.AckStatus), "A renderer's word on a command."),
     "CommandEnd": (get_args(fields.CommandEnd), "How a command ended, for the server."),
     "Authority": (get_args(fields.Authority), "Whose word holds."),
+    "Motion": (get_args(fields.Motion), "How the agent moves."),
 }
 """What each choice between texts is called: its texts in order, and what it is for."""
 _CHOICE_NAMES = {frozenset(values): name for name, (values, _) in CHOICES.items()}

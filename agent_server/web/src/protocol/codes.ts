@@ -294,6 +294,10 @@ export const ERROR_CODES: Readonly<Record<string, ErrorCode>> = {
     meaning: "telemetry: a client's clock jumped",
     advice: "use a monotonic clock",
   },
+  reaction_refused: {
+    meaning: "telemetry: a generated motion is no good",
+    advice: "authored plays",
+  },
   recording_failed: {
     meaning: "telemetry: nothing is recorded any more",
     advice: "see to the disk",

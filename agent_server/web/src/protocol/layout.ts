@@ -313,6 +313,7 @@ const CommandMessage: RecordLayout = {
     { name: "preempts", kind: ["str", 1, 160], isNullable: true, default: null },
     { name: "age_ms", kind: ["int", 0, 1000000000000], default: 0 },
     { name: "server_ns", kind: ["int", 0, 9007199254740991], default: 0 },
+    { name: "motion", kind: ["choice", ["authored", "generated"]], default: "authored" },
   ],
 };
 
@@ -443,7 +444,7 @@ const SceneBody: RecordLayout = {
 const CommandBody: RecordLayout = {
   name: "CommandBody",
   tag: null,
-  omitsDefaults: false,
+  omitsDefaults: true,
   fields: [
     { name: "id", kind: ["str", 1, 160] },
     { name: "sequence", kind: ["int", 0, 9007199254740991] },
@@ -455,6 +456,7 @@ const CommandBody: RecordLayout = {
     { name: "originating_ns", kind: ["int", 0, 9007199254740991] },
     { name: "issued_ns", kind: ["int", 0, 9007199254740991] },
     { name: "ttl_ms", kind: ["int", 0, 1000000000000] },
+    { name: "motion", kind: ["choice", ["authored", "generated"]], default: "authored" },
   ],
 };
 
@@ -573,6 +575,7 @@ const PoseStreamMessage: RecordLayout = {
     { name: "joints", kind: ["list", ["str", 1, 64], 64] },
     { name: "positions", kind: ["list", ["list", ["tuple", [["float", -60000, 60000], ["float", -60000, 60000], ["float", -60000, 60000]]], null], 250] },
     { name: "is_last", kind: ["bool"], default: false },
+    { name: "fallback", kind: ["str", 0, null], isNullable: true, default: null },
   ],
 };
 
@@ -587,6 +590,7 @@ const PackedPoseStreamMessage: RecordLayout = {
     { name: "joints", kind: ["list", ["str", 1, 64], 64] },
     { name: "positions", kind: ["bytes", 192000] },
     { name: "is_last", kind: ["bool"], default: false },
+    { name: "fallback", kind: ["str", 0, null], isNullable: true, default: null },
   ],
 };
 

@@ -37,6 +37,9 @@ export type CommandEnd = "done" | "failed" | "expired" | "preempted" | "timed_ou
 /** Whose word holds. */
 export type Authority = "server" | "renderer";
 
+/** How the agent moves. */
+export type Motion = "authored" | "generated";
+
 /** x, y, z. */
 export type Point = readonly [number, number, number];
 
@@ -433,6 +436,12 @@ export interface CommandMessage {
    * The server's monotonic clock when it was decided, as in pongs. (ns, 0..2^53 - 1) Default: `0`.
    */
   readonly server_ns: number;
+  /**
+   * `generated`: for a renderer with the capability `pose_stream` a motion follows that is made
+   * while it plays; until it comes, and after it, the steps look as authored. Default:
+   * `"authored"`.
+   */
+  readonly motion: Motion;
 }
 
 /** Telemetry that this client was too slow for since the last message of this kind. */
@@ -610,6 +619,8 @@ export interface CommandBody {
   readonly issued_ns: number;
   /** It is not to be started later than this after it was issued. (ms, 0..1000000000000) */
   readonly ttl_ms: number;
+  /** How the agent moves: as authored, or generated. Default: `"authored"`. */
+  readonly motion: Motion;
 }
 
 /** How far several futures of the window disagree. */
@@ -747,8 +758,9 @@ export interface StatsMessage {
 /**
  * A stretch of a generated motion for the agent to play (JSON coding).
  *
- * Reserved: this version of the server sends none. A renderer without the capability `pose_stream`
- * never gets one. Frames of a command come in order and without gaps.
+ * A renderer without the capability `pose_stream` never gets one. Frames of a command come in order
+ * and without gaps; where one is missing, nothing more is to be played. The authored motion stands
+ * in before the first stretch, after the last, and where none comes.
  */
 export interface PoseStreamMessage {
   readonly type: "pose_stream";
@@ -767,6 +779,8 @@ export interface PoseStreamMessage {
   readonly positions: readonly (readonly Point[])[];
   /** Whether the motion ends with this stretch. Default: `false`. */
   readonly is_last: boolean;
+  /** Why nothing more of it is good: the authored motion stands in. */
+  readonly fallback: string | null;
 }
 
 /** A stretch of a generated motion for the agent to play (MessagePack coding). */
@@ -787,6 +801,8 @@ export interface PackedPoseStreamMessage {
   readonly positions: Uint8Array;
   /** Whether the motion ends with this stretch. Default: `false`. */
   readonly is_last: boolean;
+  /** Why nothing more of it is good: the authored motion stands in. */
+  readonly fallback: string | null;
 }
 
 /** What a client sends in the JSON coding. */

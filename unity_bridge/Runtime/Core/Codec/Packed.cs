@@ -18,7 +18,7 @@ namespace AgentServer
             if (message is PoseStreamMessage stream)
                 return new PackedPoseStreamMessage(
                     stream.CommandId, stream.FirstFrame, stream.RateHz, stream.Joints,
-                    Positions(stream.Positions), stream.IsLast);
+                    Positions(stream.Positions), stream.IsLast, stream.Fallback);
             return message;
         }
 

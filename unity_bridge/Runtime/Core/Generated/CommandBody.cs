@@ -18,7 +18,8 @@ namespace AgentServer
             string preempts,
             long originatingNs,
             long issuedNs,
-            long ttlMs)
+            long ttlMs,
+            Motion motion = Motion.Authored)
         {
             Id = id ?? throw new ArgumentNullException(nameof(id));
             Sequence = sequence;
@@ -30,6 +31,7 @@ namespace AgentServer
             OriginatingNs = originatingNs;
             IssuedNs = issuedNs;
             TtlMs = ttlMs;
+            Motion = motion;
         }
 
         /// <summary>Identity. Range: 1 to 160 characters.</summary>
@@ -73,6 +75,9 @@ namespace AgentServer
         /// </summary>
         public long TtlMs { get; }
 
+        /// <summary>How the agent moves: as authored, or generated.</summary>
+        public Motion Motion { get; }
+
         static readonly string[] Required = { "id", "sequence", "reaction", "cause", "steps", "priority", "preempts", "originating_ns", "issued_ns", "ttl_ms" };
 
         internal static CommandBody Read(WireReader reader)
@@ -87,6 +92,7 @@ namespace AgentServer
             long originatingNsValue = default(long);
             long issuedNsValue = default(long);
             long ttlMsValue = default(long);
+            Motion motionValue = Motion.Authored;
             uint seen = 0;
             string key;
             reader.BeginMap();
@@ -134,18 +140,23 @@ namespace AgentServer
                         ttlMsValue = reader.Int(0, 1000000000000);
                         seen |= 0x200;
                         break;
+                    case "motion":
+                        motionValue = MotionText.Read(reader);
+                        break;
                     default:
                         reader.Skip();
                         break;
                 }
             }
             reader.Require(seen, Required);
-            return new CommandBody(idValue, sequenceValue, reactionValue, causeValue, stepsValue, priorityValue, preemptsValue, originatingNsValue, issuedNsValue, ttlMsValue);
+            return new CommandBody(idValue, sequenceValue, reactionValue, causeValue, stepsValue, priorityValue, preemptsValue, originatingNsValue, issuedNsValue, ttlMsValue, motionValue);
         }
 
         internal void Write(WireWriter writer)
         {
-            writer.BeginMap(10);
+            int count = 10;
+            if (Motion != Motion.Authored) count++;
+            writer.BeginMap(count, 11);
             writer.Key("id");
             writer.Str(Id);
             writer.Key("sequence");
@@ -167,6 +178,11 @@ namespace AgentServer
             writer.Int(IssuedNs);
             writer.Key("ttl_ms");
             writer.Int(TtlMs);
+            if (Motion != Motion.Authored)
+            {
+                writer.Key("motion");
+                writer.Str(Motion.Text());
+            }
             writer.EndMap();
         }
     }

@@ -23,7 +23,8 @@ namespace AgentServer
             long ttlMs,
             string preempts = null,
             long ageMs = 0,
-            long serverNs = 0)
+            long serverNs = 0,
+            Motion motion = Motion.Authored)
         {
             Id = id ?? throw new ArgumentNullException(nameof(id));
             Sequence = sequence;
@@ -38,6 +39,7 @@ namespace AgentServer
             Preempts = preempts;
             AgeMs = ageMs;
             ServerNs = serverNs;
+            Motion = motion;
         }
 
         /// <inheritdoc/>
@@ -102,6 +104,12 @@ namespace AgentServer
         /// </summary>
         public long ServerNs { get; }
 
+        /// <summary>
+        /// `generated`: for a renderer with the capability `pose_stream` a motion follows that is
+        /// made while it plays; until it comes, and after it, the steps look as authored.
+        /// </summary>
+        public Motion Motion { get; }
+
         static readonly string[] Required = { "id", "sequence", "epoch", "reaction", "cause", "steps", "priority", "originating_ns", "issued_ns", "ttl_ms" };
 
         internal static CommandMessage Read(WireReader reader)
@@ -119,6 +127,7 @@ namespace AgentServer
             string preemptsValue = null;
             long ageMsValue = 0;
             long serverNsValue = 0;
+            Motion motionValue = Motion.Authored;
             uint seen = 0;
             string key;
             reader.BeginMap();
@@ -175,13 +184,16 @@ namespace AgentServer
                     case "server_ns":
                         serverNsValue = reader.Int(0, 9007199254740991);
                         break;
+                    case "motion":
+                        motionValue = MotionText.Read(reader);
+                        break;
                     default:
                         reader.Skip();
                         break;
                 }
             }
             reader.Require(seen, Required);
-            return new CommandMessage(idValue, sequenceValue, epochValue, reactionValue, causeValue, stepsValue, priorityValue, originatingNsValue, issuedNsValue, ttlMsValue, preemptsValue, ageMsValue, serverNsValue);
+            return new CommandMessage(idValue, sequenceValue, epochValue, reactionValue, causeValue, stepsValue, priorityValue, originatingNsValue, issuedNsValue, ttlMsValue, preemptsValue, ageMsValue, serverNsValue, motionValue);
         }
 
         internal override void Write(WireWriter writer)
@@ -190,7 +202,8 @@ namespace AgentServer
             if (Preempts != null) count++;
             if (AgeMs != 0) count++;
             if (ServerNs != 0) count++;
-            writer.BeginMap(count, 14);
+            if (Motion != Motion.Authored) count++;
+            writer.BeginMap(count, 15);
             writer.Key("type");
             writer.Str("command");
             writer.Key("id");
@@ -227,6 +240,11 @@ namespace AgentServer
             {
                 writer.Key("server_ns");
                 writer.Int(ServerNs);
+            }
+            if (Motion != Motion.Authored)
+            {
+                writer.Key("motion");
+                writer.Str(Motion.Text());
             }
             writer.EndMap();
         }

@@ -95,6 +95,8 @@ namespace AgentServer
         public const string FaceSkew = "face_skew";
         /// <summary>Telemetry: a client's clock jumped.</summary>
         public const string ClockJump = "clock_jump";
+        /// <summary>Telemetry: a generated motion is no good.</summary>
+        public const string ReactionRefused = "reaction_refused";
         /// <summary>Telemetry: nothing is recorded any more.</summary>
         public const string RecordingFailed = "recording_failed";
         /// <summary>Telemetry: forecasts are worse than none.</summary>
@@ -149,6 +151,7 @@ namespace AgentServer
             new ErrorCode(FaceFailed, "telemetry: an image was not read", "the next one may be"),
             new ErrorCode(FaceSkew, "telemetry: body and face too far apart", "one clock, more faces"),
             new ErrorCode(ClockJump, "telemetry: a client's clock jumped", "use a monotonic clock"),
+            new ErrorCode(ReactionRefused, "telemetry: a generated motion is no good", "authored plays"),
             new ErrorCode(RecordingFailed, "telemetry: nothing is recorded any more", "see to the disk"),
             new ErrorCode(ForecastDrift, "telemetry: forecasts are worse than none", "see to the sensor"),
             new ErrorCode(SceneDiffers, "telemetry: renderer and room did not agree", "see differences"),

@@ -16,7 +16,8 @@ namespace AgentServer
             double rateHz,
             IReadOnlyList<string> joints,
             byte[] positions,
-            bool isLast = false)
+            bool isLast = false,
+            string fallback = null)
         {
             CommandId = commandId ?? throw new ArgumentNullException(nameof(commandId));
             FirstFrame = firstFrame;
@@ -24,6 +25,7 @@ namespace AgentServer
             Joints = joints ?? throw new ArgumentNullException(nameof(joints));
             Positions = positions ?? throw new ArgumentNullException(nameof(positions));
             IsLast = isLast;
+            Fallback = fallback;
         }
 
         /// <inheritdoc/>
@@ -50,6 +52,11 @@ namespace AgentServer
         /// <summary>Whether the motion ends with this stretch.</summary>
         public bool IsLast { get; }
 
+        /// <summary>
+        /// Why nothing more of it is good: the authored motion stands in. May be null.
+        /// </summary>
+        public string Fallback { get; }
+
         static readonly string[] Required = { "command_id", "first_frame", "rate_hz", "joints", "positions" };
 
         internal static PackedPoseStreamMessage Read(WireReader reader)
@@ -60,6 +67,7 @@ namespace AgentServer
             IReadOnlyList<string> jointsValue = default(IReadOnlyList<string>);
             byte[] positionsValue = default(byte[]);
             bool isLastValue = false;
+            string fallbackValue = null;
             uint seen = 0;
             string key;
             reader.BeginMap();
@@ -90,20 +98,24 @@ namespace AgentServer
                     case "is_last":
                         isLastValue = reader.Bool();
                         break;
+                    case "fallback":
+                        fallbackValue = reader.Null() ? null : reader.Str(0, int.MaxValue);
+                        break;
                     default:
                         reader.Skip();
                         break;
                 }
             }
             reader.Require(seen, Required);
-            return new PackedPoseStreamMessage(commandIdValue, firstFrameValue, rateHzValue, jointsValue, positionsValue, isLastValue);
+            return new PackedPoseStreamMessage(commandIdValue, firstFrameValue, rateHzValue, jointsValue, positionsValue, isLastValue, fallbackValue);
         }
 
         internal override void Write(WireWriter writer)
         {
             int count = 6;
             if (IsLast) count++;
-            writer.BeginMap(count, 7);
+            if (Fallback != null) count++;
+            writer.BeginMap(count, 8);
             writer.Key("type");
             writer.Str("pose_stream");
             writer.Key("command_id");
@@ -120,6 +132,11 @@ namespace AgentServer
             {
                 writer.Key("is_last");
                 writer.Bool(IsLast);
+            }
+            if (Fallback != null)
+            {
+                writer.Key("fallback");
+                writer.Str(Fallback);
             }
             writer.EndMap();
         }

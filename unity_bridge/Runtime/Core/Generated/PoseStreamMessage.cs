@@ -5,9 +5,10 @@ using System.Collections.Generic;
 namespace AgentServer
 {
     /// <summary>
-    /// A stretch of a generated motion for the agent to play (JSON coding). Reserved: this
-    /// version of the server sends none. A renderer without the capability `pose_stream` never
-    /// gets one. Frames of a command come in order and without gaps.
+    /// A stretch of a generated motion for the agent to play (JSON coding). A renderer without
+    /// the capability `pose_stream` never gets one. Frames of a command come in order and
+    /// without gaps; where one is missing, nothing more is to be played. The authored motion
+    /// stands in before the first stretch, after the last, and where none comes.
     /// </summary>
     public sealed class PoseStreamMessage : Message
     {
@@ -18,7 +19,8 @@ namespace AgentServer
             double rateHz,
             IReadOnlyList<string> joints,
             IReadOnlyList<IReadOnlyList<Point3>> positions,
-            bool isLast = false)
+            bool isLast = false,
+            string fallback = null)
         {
             CommandId = commandId ?? throw new ArgumentNullException(nameof(commandId));
             FirstFrame = firstFrame;
@@ -26,6 +28,7 @@ namespace AgentServer
             Joints = joints ?? throw new ArgumentNullException(nameof(joints));
             Positions = positions ?? throw new ArgumentNullException(nameof(positions));
             IsLast = isLast;
+            Fallback = fallback;
         }
 
         /// <inheritdoc/>
@@ -52,6 +55,11 @@ namespace AgentServer
         /// <summary>Whether the motion ends with this stretch.</summary>
         public bool IsLast { get; }
 
+        /// <summary>
+        /// Why nothing more of it is good: the authored motion stands in. May be null.
+        /// </summary>
+        public string Fallback { get; }
+
         static readonly string[] Required = { "command_id", "first_frame", "rate_hz", "joints", "positions" };
 
         internal static PoseStreamMessage Read(WireReader reader)
@@ -62,6 +70,7 @@ namespace AgentServer
             IReadOnlyList<string> jointsValue = default(IReadOnlyList<string>);
             IReadOnlyList<IReadOnlyList<Point3>> positionsValue = default(IReadOnlyList<IReadOnlyList<Point3>>);
             bool isLastValue = false;
+            string fallbackValue = null;
             uint seen = 0;
             string key;
             reader.BeginMap();
@@ -92,20 +101,24 @@ namespace AgentServer
                     case "is_last":
                         isLastValue = reader.Bool();
                         break;
+                    case "fallback":
+                        fallbackValue = reader.Null() ? null : reader.Str(0, int.MaxValue);
+                        break;
                     default:
                         reader.Skip();
                         break;
                 }
             }
             reader.Require(seen, Required);
-            return new PoseStreamMessage(commandIdValue, firstFrameValue, rateHzValue, jointsValue, positionsValue, isLastValue);
+            return new PoseStreamMessage(commandIdValue, firstFrameValue, rateHzValue, jointsValue, positionsValue, isLastValue, fallbackValue);
         }
 
         internal override void Write(WireWriter writer)
         {
             int count = 6;
             if (IsLast) count++;
-            writer.BeginMap(count, 7);
+            if (Fallback != null) count++;
+            writer.BeginMap(count, 8);
             writer.Key("type");
             writer.Str("pose_stream");
             writer.Key("command_id");
@@ -122,6 +135,11 @@ namespace AgentServer
             {
                 writer.Key("is_last");
                 writer.Bool(IsLast);
+            }
+            if (Fallback != null)
+            {
+                writer.Key("fallback");
+                writer.Str(Fallback);
             }
             writer.EndMap();
         }
