@@ -260,13 +260,17 @@ def evaluate_interaction(
     row: Annotated[
         list[str] | None, typer.Option("--row", help="Of rows: S1, S2, S3 or S4; all if left out.")
     ] = None,
+    steps: Annotated[
+        int | None,
+        typer.Option("--steps", help="Of bigraphdiff's rows: updates of each.", min=1),
+    ] = None,
     runs: InteractionRunsOption = INTERACTION_RUNS,
     as_json: JsonOption = False,
 ) -> None:
     """Generated motion by judges of real one: accuracy, spread and distance of its features."""
     torch.set_num_threads(1)
     if model == "bigraphdiff":
-        show(_both_people(data, sets, benchmark, row, runs), as_json)
+        show(_both_people(data, sets, benchmark, row, steps, runs), as_json)
         return
     chosen = [interaction_set(name) for name in sets or INTERACTION_SETS]
     match benchmark:
@@ -280,14 +284,19 @@ def evaluate_interaction(
 
 
 def _both_people(
-    data: Path, sets: list[str] | None, benchmark: str, row: list[str] | None, runs: Path
+    data: Path,
+    sets: list[str] | None,
+    benchmark: str,
+    row: list[str] | None,
+    steps: int | None,
+    runs: Path,
 ) -> dict[str, Any]:
     chosen = [two_person_set(name) for name in sets] if sets else bundled_sets()
     match benchmark:
         case "bundle":
             return {spec.name: pair_bundle_report(spec, data, runs) for spec in chosen}
         case "rows":
-            return {spec.name: pair_rows_report(spec, data, runs, row) for spec in chosen}
+            return {spec.name: pair_rows_report(spec, data, runs, row, steps) for spec in chosen}
         case _:
             raise typer.BadParameter(
                 f"there is no {benchmark} of bigraphdiff: bundle or rows", param_hint="--benchmark"

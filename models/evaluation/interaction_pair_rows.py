@@ -1,6 +1,7 @@
 """BiGraphDiff measured: its bundle, and the paper's four rows, each trained where it is not."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +61,7 @@ def pair_rows_report(
     data: Path,
     runs: Path,
     rows: Sequence[str] | None = None,
+    steps: int | None = None,
 ) -> dict[str, Any]:
     """The paper's rows, each trained unless its run is in ``runs``.
 
@@ -68,6 +70,7 @@ def pair_rows_report(
         data: Folder that holds the set folders.
         runs: Where runs and judges are kept.
         rows: Which of :data:`models.bigraphdiff.config.ABLATIONS`; None for all.
+        steps: Updates of each row; None for those of the configuration.
 
     Raises:
         ConfigError: If there is no such row.
@@ -79,8 +82,10 @@ def pair_rows_report(
     court = PairCourt.of(spec, data, runs)
     found = court.setting()
     for row in rows:
-        place = runs / f"{MODEL}_{spec.name}_{row}"
-        _train_where_missing(ablated(CONFIGS[spec.name], row), court.training, place)
+        config = ablated(CONFIGS[spec.name], row)
+        config = replace(config, steps=steps or config.steps)
+        place = runs / f"{MODEL}_{spec.name}_{row}_{config.steps}"
+        _train_where_missing(config, court.training, place)
         found[row] = court.measure(interacting(run_generator(place, spec)))
     return found
 

@@ -128,7 +128,7 @@ def train_judge(
         for step in range(config.steps):
             for group in optimizer.param_groups:
                 group["lr"] = config.learning_rate * warm_cosine(step, config.steps, 20)
-            batch = vary(pairs.draw(config.batch, generator), generator, swap=swap)
+            batch = _drawn(pairs, generator, swap, config, people)
             logits = judge(judge.sees(batch), batch.lengths)
             loss = F.cross_entropy(logits, batch.labels, label_smoothing=0.05)
             optimizer.zero_grad(set_to_none=True)
@@ -139,12 +139,23 @@ def train_judge(
 
 
 def _drawn(
-    pairs: Pairs, generator: torch.Generator, swap: torch.Tensor | None, config: JudgeConfig
+    pairs: Pairs,
+    generator: torch.Generator,
+    swap: torch.Tensor | None,
+    config: JudgeConfig,
+    people: int,
 ) -> Pairs:
-    """A random batch, varied."""
+    """A random batch, varied; two people keep one pace, and nobody is turned away from the other."""
     share = torch.bincount(pairs.labels).float()[pairs.labels] ** -config.balance
     chosen = torch.multinomial(share, config.batch, replacement=True, generator=generator)
     batch = vary(pairs.take(chosen), generator, swap=swap)
+    if people == 2:
+        both = [
+            vary_bodies(person, generator, config.limbs, 0.0)
+            for person in (batch.action, batch.reaction)
+        ]
+        motion, lengths = vary_pace(torch.cat(both, dim=2), batch.lengths, generator, config.pace)
+        return Pairs(motion[:, :, :JOINTS], motion[:, :, JOINTS:], lengths, batch.labels)
     motion = vary_bodies(batch.reaction, generator, config.limbs, config.turn)
     return batch.with_reactions(*vary_pace(motion, batch.lengths, generator, config.pace))
 
