@@ -88,10 +88,10 @@ async def test_a_motion_that_is_no_good_says_why_and_monitors_hear_of_it():
 
 async def test_decisions_go_on_while_a_motion_is_made_and_its_end_stops_the_making():
     going = threading.Event()
+    going.set()
     reactor = HandReactor(waits=lambda: going.wait(5.0))
     decisions = []
     async with live(reacting(reactor), SETTINGS, alter_rule=generated) as server:
-        going.set()
         async with (
             server.join("renderer", hello=PLAYS) as renderer,
             server.join("monitor") as monitor,

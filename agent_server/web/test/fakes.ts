@@ -171,6 +171,7 @@ export const COMMAND: CommandBody = {
   originating_ns: 1,
   issued_ns: 2,
   ttl_ms: 3000,
+  motion: "authored",
 };
 
 /** The command as it comes to a renderer. */

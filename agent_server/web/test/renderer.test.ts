@@ -25,6 +25,7 @@ beforeEach(() => {
     {
       onCommand: ({ id }) => seen.push(`command ${id}`),
       onCancel: ({ id }, reason) => seen.push(`cancel ${id} ${reason}`),
+      onMotion: ({ first_frame }) => seen.push(`motion ${first_frame}`),
       onScene: ({ mode }) => seen.push(`scene ${mode}`),
       onDifferences: (differences) => seen.push(`differs ${differences.map((d) => d.object).join()}`),
     },
@@ -156,4 +157,19 @@ test("the server's clock is known from its pongs", () => {
   host.pass(10);
   host.socket.say({ type: "pong", sent_ns: ping?.["sent_ns"], time_ns: 1_000_000_000 });
   assert.equal(renderer.serverNs, 1_005_000_000);
+});
+
+test("motion is handed on for the command that is under way, and for no other", () => {
+  join();
+  const stretch = { type: "pose_stream", rate_hz: 25, joints: ["torso"], positions: [[[0, 1, 0]]] };
+  const say = (command_id: string, first_frame: number) => host.socket.say({ ...stretch, command_id, first_frame });
+  host.socket.say(commanded({ id: "lab/c1", motion: "generated" }));
+  renderer.start("lab/c1");
+  seen = [];
+  say("lab/c1", 0);
+  say("lab/c0", 5);
+  say("lab/c1", 1);
+  renderer.done("lab/c1");
+  say("lab/c1", 2);
+  assert.deepEqual(seen, ["motion 0", "motion 1"]);
 });

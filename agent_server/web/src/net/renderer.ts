@@ -10,6 +10,7 @@ import type {
   Difference,
   ErrorMessage,
   Hello,
+  PoseStreamMessage,
   SceneState,
   Welcome,
 } from "../protocol/messages.ts";
@@ -43,6 +44,8 @@ export interface RendererEvents {
   onCommand(command: CommandMessage): void;
   /** Stop carrying this out; nothing is to be said of it any more. */
   onCancel(command: CommandMessage, reason: CancelReason): void;
+  /** More of the motion of the command that is under way; for the capability `pose_stream`. */
+  onMotion?(stretch: PoseStreamMessage): void;
   /** The room as it is, or has become. */
   onScene?(scene: SceneState): void;
   /** Objects on which the room and `objects` did not agree, with whose state holds now. */
@@ -178,6 +181,11 @@ export class RendererClient {
         if (isNew) this.#events.onCommand(message);
         return;
       }
+      case "pose_stream":
+        if (message.command_id !== this.#ledger.running?.id) return;
+        if (typeof message.positions === "string" || message.positions instanceof Uint8Array) return;
+        this.#events.onMotion?.(message as PoseStreamMessage);
+        return;
       case "scene":
         this.#events.onScene?.(message);
         return;

@@ -8,7 +8,7 @@ import type { Host } from "../net/host.ts";
 import { RendererClient } from "../net/renderer.ts";
 import type { Place } from "../place.ts";
 import type { Incoming } from "../protocol/codec.ts";
-import type { CommandMessage, SceneState } from "../protocol/messages.ts";
+import type { CommandMessage, PoseStreamMessage, SceneState } from "../protocol/messages.ts";
 import type { Mode } from "./agent/agent.ts";
 import type { PlayCallbacks } from "./agent/director.ts";
 
@@ -17,6 +17,7 @@ export interface Theatre {
   show(objects: Readonly<Record<string, string>>, animate: boolean): void;
   setMode(mode: Mode): void;
   play(command: CommandMessage, callbacks: PlayCallbacks): void;
+  move(stretch: PoseStreamMessage): void;
   cut(): void;
 }
 
@@ -96,7 +97,7 @@ export class Actor {
         session: this.#place.session,
         client: this.#client,
         // Whoever brings a renderer of their own need not close this page first.
-        capabilities: ["stand_in"],
+        capabilities: ["stand_in", "pose_stream"],
         takesOver,
       },
       this.#host,
@@ -111,6 +112,7 @@ export class Actor {
             },
           });
         },
+        onMotion: (stretch) => this.#theatre.move(stretch),
         onCancel: () => this.#cut(),
         onScene: (scene) => this.#setScene(scene),
         onStatus: ({ phase, fault }) => {

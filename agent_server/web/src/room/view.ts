@@ -16,6 +16,7 @@ import { Agent, type AgentState, type Mode } from "./agent/agent.ts";
 import type { Play, PlayCallbacks } from "./agent/director.ts";
 import { loadBody } from "./agent/load.ts";
 import type { Props } from "./agent/props.ts";
+import type { PoseStreamMessage } from "../protocol/messages.ts";
 import { VIEW } from "./layout.ts";
 import { EXPOSURE, Scenery, TONE_MAPPING, type MovableName } from "./scenery/scenery.ts";
 
@@ -154,6 +155,11 @@ export class RoomView {
 
   play(command: Play, callbacks: PlayCallbacks): void {
     this.#agent?.play(command, callbacks);
+  }
+
+  /** More of a motion that is made while it plays. */
+  move(stretch: PoseStreamMessage): void {
+    this.#agent?.move(stretch);
   }
 
   cut(): void {

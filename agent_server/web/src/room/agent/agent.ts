@@ -1,12 +1,14 @@
 /** The agent: a body that carries out commands, and is alive between them. */
 
 import { Vector3 } from "three";
+import type { PoseStreamMessage } from "../../protocol/messages.ts";
 import { VIEW, type Vec3 } from "../layout.ts";
 import { Director, isDeed, type Play, type PlayCallbacks } from "./director.ts";
 import { Face } from "./face.ts";
 import { Idle, ROOM_IDLE, type IdleBehaviour } from "./idle.ts";
 import { Chance } from "./maths.ts";
 import { Mover } from "./mover.ts";
+import { MotionStream } from "./stream.ts";
 import { SIGHTS } from "./places.ts";
 import type { Props } from "./props.ts";
 import { SIDES, type Rig, type Side } from "./rig.ts";
@@ -33,7 +35,9 @@ export interface AgentState {
   readonly position: readonly [x: number, z: number];
   readonly heading: number;
   readonly gaze: Vec3;
-  readonly hands: Readonly<Record<Side, { readonly holds: string | null; readonly error_m: number }>>;
+  readonly hands: Readonly<
+    Record<Side, { readonly holds: string | null; readonly error_m: number; readonly led: boolean }>
+  >;
 }
 
 /** How the face answers a deed's cause, and somebody who is looked at. */
@@ -49,6 +53,7 @@ export class Agent {
   readonly #director: Director;
   readonly #face: Face;
   readonly #idle: Idle;
+  readonly #stream = new MotionStream();
   readonly #lookedAt = new Vector3();
   #mode: Mode = "working";
   #discomfortLeft = 0;
@@ -67,6 +72,7 @@ export class Agent {
   /** Carry this out, instead of what is under way. */
   play(command: Play, callbacks: PlayCallbacks = {}): void {
     this.#director.play(command, callbacks);
+    this.#stream.clear();
     this.#mover.isTyping = false;
     const answers = command.steps.some(({ action }) => isDeed(action));
     this.#discomfortLeft = answers ? DISCOMFORT.seconds : 0;
@@ -75,7 +81,13 @@ export class Agent {
   /** Give up what is under way: let go, finish the step, stay there. No callback follows. */
   cut(): void {
     this.#director.cut();
+    this.#stream.clear();
     this.#discomfortLeft = 0;
+  }
+
+  /** Take more of the motion of the command under way: it leads the hands and the trunk. */
+  move(stretch: PoseStreamMessage): void {
+    this.#stream.push(stretch);
   }
 
   setMode(mode: Mode): void {
@@ -98,7 +110,9 @@ export class Agent {
     } else {
       this.#beIdle(dt);
     }
+    this.#stream.step(dt);
     this.#placeHands();
+    this.#mover.inclination = this.#stream.lean;
     this.#mover.step(dt);
     this.#express(dt);
   }
@@ -109,6 +123,7 @@ export class Agent {
     const hand = (side: Side) => ({
       holds: holding?.deed.grip.side === side ? holding.deed.object : null,
       error_m: body.arms[side].error,
+      led: this.#stream.leads(side),
     });
     return {
       doing: this.#director.doing ?? `${this.#mode}: ${this.#idle.action}`,
@@ -158,7 +173,9 @@ export class Agent {
     const task = !mover.isAtDesk ? "free" : this.#isWorking() ? "type" : "desk";
     for (const side of SIDES) {
       const hand = mover.hands[side];
-      if (hand.task !== "hold") hand.do(task);
+      if (hand.task === "hold") continue;
+      if (this.#stream.leads(side)) hand.be(this.#stream.arms[side]);
+      else hand.do(task);
     }
   }
 

@@ -1,5 +1,5 @@
 /**
- * A hand and what it does: hang, rest, type, or hold something that moves. It goes from one to the
+ * A hand and what it does: hang, rest, type, follow a motion, or hold something that moves. It goes from one to the
  * other on a straight and smooth way.
  */
 
@@ -8,14 +8,16 @@ import { DESK, ON_DESK } from "../layout.ts";
 import { PlaceChannel, TurnChannel } from "./channel.ts";
 import { basis } from "./ik.ts";
 import { Spring, mix, smooth } from "./maths.ts";
+import type { ArmPose } from "./stream.ts";
 import type { Grip } from "./places.ts";
 import type { HandGoal, Posture } from "./posture.ts";
 import type { Arm, Rig, Side } from "./rig.ts";
 
-export type HandTask = "free" | "desk" | "type" | "hold";
+export type HandTask = "free" | "desk" | "type" | "follow" | "hold";
 
 /** Seconds to get there from anywhere. */
 export const WAY_S: Readonly<Record<Exclude<HandTask, "hold">, number>> = {
+  follow: 0.4,
   free: 0.55,
   desk: 0.6,
   type: 0.55,
@@ -24,6 +26,8 @@ export const WAY_S: Readonly<Record<Exclude<HandTask, "hold">, number>> = {
 const SWING = 0.75;
 /** Of a hand that lies on the thigh: aside and above the hip joint, metres; along the thigh. */
 const LAP = { aside: 0.03, above: 0.1, share: 0.62 } as const;
+/** Who sits at the desk keeps a hand that follows a motion so far over its top. */
+const OVER_DESK = 0.1;
 /** Over the desk's top: of the fist that rests, and of the one over and before the keys. */
 const REST = { height: 0.028, x: 0.16, z: -0.01 } as const;
 const KEYS = { height: 0.048, before: 0.05, apart: 0.085, tap: 0.008 } as const;
@@ -60,6 +64,7 @@ export class Hand {
   readonly #swing = new Spring();
   #handle: Object3D | null = null;
   #grip: Grip | null = null;
+  #pose: ArmPose | null = null;
   #isGripping = false;
   #tapping = 0;
   /** How far the action that it is holding on for has come. */
@@ -74,7 +79,17 @@ export class Hand {
     basis(this.arm.fingers, this.arm.palm, this.#restInverse).invert();
   }
 
-  do(task: Exclude<HandTask, "hold">): void {
+  do(task: Exclude<HandTask, "hold" | "follow">): void {
+    this.#go(task);
+  }
+
+  /** Be held as in a pose, which may change. */
+  be(pose: ArmPose): void {
+    this.#pose = pose;
+    this.#go("follow");
+  }
+
+  #go(task: Exclude<HandTask, "hold">): void {
     if (task === this.task) return;
     this.task = task;
     this.#isGripping = false;
@@ -122,6 +137,9 @@ export class Hand {
         break;
       case "type":
         this.#type(bearing.typed);
+        break;
+      case "follow":
+        this.#follow(pose, bearing.risen);
         break;
       case "hold":
         this.#reach();
@@ -211,6 +229,23 @@ export class Hand {
     );
     fingers.set(-sign * 0.28, -0.1, 1);
     palm.set(-sign * 0.25, -1, -0.1);
+  }
+
+  /** Where the pose has it, for arms of this length; the palm towards the body. */
+  #follow(pose: Posture, risen: number): void {
+    if (this.#pose === null) return;
+    const { arm } = this;
+    const { Hips } = this.#rig.joints;
+    fingers.copy(this.#pose.fore);
+    source.copy(this.#pose.reach).multiplyScalar(arm.upperLength + arm.foreLength);
+    source.addScaledVector(fingers, arm.fist.length());
+    other.subVectors(arm.upper.rest.place, Hips.rest.place);
+    source.add(other);
+    source.z += other.y * Math.sin(pose.tilt + pose.lean);
+    source.applyAxisAngle(UP, pose.heading).add(pose.hips);
+    if (risen < 0.5) source.y = Math.max(source.y, DESK.top + OVER_DESK);
+    palm.set(-this.#sign, -0.3, -0.2).applyAxisAngle(UP, pose.heading);
+    fingers.applyAxisAngle(UP, pose.heading);
   }
 
   /** At the handle, the fingers between the lines from the shoulder and from the elbow. */

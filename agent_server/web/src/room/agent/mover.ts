@@ -39,6 +39,8 @@ export class Mover {
   readonly gait: Gait;
   readonly feet: Readonly<Record<Side, Foot>> = { Left: new Foot(), Right: new Foot() };
   isTyping = false;
+  /** Of the trunk for a motion that is played, radians. */
+  inclination = 0;
   readonly #rig: Rig;
   readonly #trunk: Trunk;
   readonly #breath = new Breath();
@@ -201,6 +203,7 @@ export class Mover {
       pose.sway *= Math.exp(-8 * dt);
       pose.roll *= Math.exp(-8 * dt);
     }
+    trunk.lean += this.inclination;
     trunk.twist = this.gaze.chest;
     const reaching = this.#reaching;
     if (reaching === null) trunk.rest();
