@@ -145,7 +145,7 @@ def _drawn(
     config: JudgeConfig,
     people: int,
 ) -> Pairs:
-    """A random batch, varied; two people keep one pace, and nobody is turned away from the other."""
+    """A random batch, varied; two people keep one pace, and none is turned from the other."""
     share = torch.bincount(pairs.labels).float()[pairs.labels] ** -config.balance
     chosen = torch.multinomial(share, config.batch, replacement=True, generator=generator)
     batch = vary(pairs.take(chosen), generator, swap=swap)
