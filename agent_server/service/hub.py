@@ -4,7 +4,6 @@ import asyncio
 import logging
 import secrets
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager, suppress
 
 from agent_server import __version__
@@ -18,7 +17,8 @@ from agent_server.scene.rulebook import Rules
 from agent_server.service.audience import Client
 from agent_server.service.avatar import Avatar, NoAvatar
 from agent_server.service.camera import Eyes
-from agent_server.service.journal import Journal, NoJournal
+from agent_server.service.journal import Journal
+from agent_server.service.journals import Journals
 from agent_server.service.load import Load, LoadGauge
 from agent_server.service.loop_lag import measure_lag
 from agent_server.service.metrics import Metrics
@@ -33,9 +33,6 @@ from agent_server.service.worker import InferenceWorker
 log = logging.getLogger(__name__)
 
 
-MAX_CLOSERS = 64
-JOURNALS_S = 4.0
-"""How long a server that stops waits for its recordings; with all else it takes under 10 s."""
 _LEFT_OUT = {
     Load.NONE: "the event loop is in time again, nothing is left out",
     Load.TELEMETRY: "the event loop is late, telemetry is left out",
@@ -83,7 +80,6 @@ class Hub:
         self.settings = settings
         self.clock = clock
         self._rules = rules
-        self._open_journal = open_journal
         self._store = store or MemoryStore()
         self._avatar = avatar or NoAvatar()
         self._worker = InferenceWorker(models)
@@ -97,9 +93,7 @@ class Hub:
         self._clients = 0
         self._empty = asyncio.Event()
         self._empty.set()
-        self._journals: dict[str, Journal] = {}
-        self._closings: set[asyncio.Future[None]] = set()
-        self._closers = ThreadPoolExecutor(MAX_CLOSERS, thread_name_prefix="closing")
+        self._journals = Journals(open_journal)
         self._tasks: dict[str, asyncio.Task[None]] = {}
         self._endings: dict[str, asyncio.TimerHandle] = {}
         self._group: asyncio.TaskGroup | None = None
@@ -150,7 +144,7 @@ class Hub:
                 self._avatar.close()
                 for watcher in self._watchers:
                     watcher.close()
-                await self._close_journals()
+                await self._journals.end()
                 for task in (worker, lag, warming):
                     task.cancel()
                 if self._eyes is not None:
@@ -168,13 +162,6 @@ class Hub:
         self.watchdog.beat()
         if self.gauge.push(lag_s):
             log.warning("load: %s", _LEFT_OUT[self.gauge.load])
-
-    async def _close_journals(self) -> None:
-        self._closers.shutdown(wait=False)
-        if self._closings:
-            _, hanging = await asyncio.wait(self._closings, timeout=JOURNALS_S)
-            if hanging:
-                log.error("%d recordings are not finished: the disk hangs", len(hanging))
 
     async def drain(self) -> None:
         """Stop, and let clients read what waits for them, but not for long."""
@@ -275,7 +262,6 @@ class Hub:
         if self.gauge.load >= Load.WINDOWS:
             raise HubFull("the server is overloaded and opens no new session now")
         saved = self._store.load(session_id)
-        journal = NoJournal() if self._open_journal is None else self._open_journal(session_id)
         session = Session(
             session_id,
             self.settings,
@@ -288,7 +274,7 @@ class Hub:
                 epoch=secrets.token_hex(4),
                 saved=saved,
             ),
-            journal,
+            self._journals.open(session_id),
             self._store,
             self._avatar,
             self._eyes,
@@ -296,7 +282,6 @@ class Hub:
             watchers=self._watchers,
         )
         self._sessions[session_id] = session
-        self._journals[session_id] = journal
         self._tasks[session_id] = self._group.create_task(
             self._guard(session), name=f"session {session_id}"
         )
@@ -329,11 +314,7 @@ class Hub:
         session = self._sessions.pop(session_id)
         self._endings.pop(session_id, None)
         session.close(code, reason)
-        # A slow disk may take its time to finish a recording, and nobody else's.
-        loop = asyncio.get_running_loop()
-        closing = loop.run_in_executor(self._closers, self._journals.pop(session_id).close)
-        self._closings.add(closing)
-        closing.add_done_callback(self._closings.discard)
+        self._journals.close(session_id)
         self.metrics.closed(session)
         self._tasks.pop(session_id).cancel()
         self._store.release(session_id)
