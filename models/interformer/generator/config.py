@@ -83,7 +83,7 @@ class TrainConfig:
 
     network: NetworkConfig = NetworkConfig()
     data: str = "sbu"
-    steps: int = 600
+    steps: int = 1500
     batch: int = 16
     learning_rate: float = 2e-3
     weight_decay: float = 0.02
