@@ -18,6 +18,7 @@ from agent_server.inference.manifest import (
     read_task,
 )
 from agent_server.inference.runtime import OnnxPredictor
+from models.bigraphdiff.onnx_denoiser import INPUTS, read_generator
 from models.evaluation.forecasters import BENCHMARKS
 from models.interformer.generator.generate import generate
 from models.interformer.generator.onnx_core import OnnxCore
@@ -25,8 +26,9 @@ from models.ops.session import OnnxModel
 
 ROOT = Path(__file__).parents[3]
 ALL = sorted(path.parent for path in (ROOT / BENCHMARKS).glob("*/manifest.json"))
-BUNDLES = [folder for folder in ALL if read_task(folder) != "react"]
+BUNDLES = [folder for folder in ALL if read_task(folder) == "predict"]
 REACTIONS = [folder for folder in ALL if read_task(folder) == "react"]
+INTERACTIONS = [folder for folder in ALL if read_task(folder) == "interact"]
 LIMIT_BYTES = 20_000_000
 LATENCY_MS = 8.0
 """A frame of a reaction, as measured at export."""
@@ -65,6 +67,21 @@ def test_generators_of_reactions_give_their_golden_output_and_are_for_research(
     assert "Research only" in (folder / "CARD.md").read_text()
     with pytest.raises(BundleError, match="not a valid manifest"):
         read_manifest(folder, MotionManifest)  # what a server's models have
+
+
+@pytest.mark.parametrize("folder", INTERACTIONS, ids=lambda folder: folder.name)
+def test_generators_of_interactions_give_their_golden_output_and_are_for_research(
+    folder: Path,
+) -> None:
+    generator, manifest = read_generator(folder)
+    with np.load(folder / GOLDEN_FILE) as golden:
+        found = generator.denoise(*(torch.from_numpy(golden[name]) for name in INPUTS))
+        np.testing.assert_allclose(found.numpy(), golden["clean"], atol=1e-4)
+    assert manifest.licence.startswith("research only")
+    assert manifest.drawn_steps <= 50
+    assert "Research only" in (folder / "CARD.md").read_text()
+    with pytest.raises(BundleError, match="not a valid manifest"):
+        read_manifest(folder, MotionManifest)
 
 
 @pytest.mark.parametrize("name", ["best_h36m", "simlpe_h36m"])
