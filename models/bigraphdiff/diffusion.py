@@ -16,6 +16,8 @@ from models.data.interactions import TORSO, Pairs
 
 DRAWN_STEPS = 50
 """Steps of a draw; as many calls of the network."""
+LED = 0.5
+"""Share of the steps in which known frames stand in for what the network makes of them."""
 LEAST_DEVIATION = 0.1
 """Metres; joints that hardly move are not made as large as hands."""
 
@@ -105,7 +107,8 @@ def draw(
         words: Shape (B, W).
         steps: Steps of the diffusion.
         drawn_steps: How many of them are taken; 1 takes all noise away at once.
-        known: Shape (B, 2, K, J, 3), how the motions begin, or None.
+        known: Shape (B, 2, K, J, 3), how the motions begin, or None; in the end it fades into
+            what the network makes of it, so that there is no leap behind it.
 
     Returns:
         Normalised motions, of the shape of ``noise``.
@@ -122,11 +125,22 @@ def draw(
     moment = noise
     for place, step in enumerate(at):
         clean = denoise(moment, lengths, torch.full_like(lengths, step), words)
-        if known is not None:
-            clean = torch.cat([known, clean[:, :, known.shape[2] :]], dim=2)
-        if place + 1 == len(at):
+        is_last = place + 1 == len(at)
+        # Known frames lead the coarse steps; to the end they would tear off from the next ones.
+        if known is not None and (is_last or place < LED * len(at)):
+            clean = _with_beginning(clean, known, fades=is_last)
+        if is_last:
             break
         rest = (moment - left[step].sqrt() * clean) / (1 - left[step]).sqrt()
         earlier = left[at[place + 1]]
         moment = earlier.sqrt() * clean + (1 - earlier).sqrt() * rest
     return clean
+
+
+def _with_beginning(clean: torch.Tensor, known: torch.Tensor, fades: bool) -> torch.Tensor:
+    """A motion whose first frames are known ones; each less so than the one before if it fades."""
+    count = known.shape[2]
+    if fades:
+        share = torch.arange(1, count + 1)[:, None, None] / (count + 1)
+        known = known.lerp(clean[:, :, :count], share)
+    return torch.cat([known, clean[:, :, count:]], dim=2)
