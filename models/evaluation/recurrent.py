@@ -128,7 +128,10 @@ def train_judge(
         for step in range(config.steps):
             for group in optimizer.param_groups:
                 group["lr"] = config.learning_rate * warm_cosine(step, config.steps, 20)
-            batch = _drawn(pairs, generator, swap, config, people)
+            if people == 1:
+                batch = _varied(pairs, generator, swap, config)
+            else:  # both in view tell enough apart, and stay as they stand to each other
+                batch = vary(pairs.draw(config.batch, generator), generator, swap=swap)
             logits = judge(judge.sees(batch), batch.lengths)
             loss = F.cross_entropy(logits, batch.labels, label_smoothing=0.05)
             optimizer.zero_grad(set_to_none=True)
@@ -138,24 +141,13 @@ def train_judge(
     return judge.eval()
 
 
-def _drawn(
-    pairs: Pairs,
-    generator: torch.Generator,
-    swap: torch.Tensor | None,
-    config: JudgeConfig,
-    people: int,
+def _varied(
+    pairs: Pairs, generator: torch.Generator, swap: torch.Tensor | None, config: JudgeConfig
 ) -> Pairs:
-    """A random batch, varied; two people keep one pace, and none is turned from the other."""
+    """A random batch of reactions by other bodies, at other paces, with rare labels more often."""
     share = torch.bincount(pairs.labels).float()[pairs.labels] ** -config.balance
     chosen = torch.multinomial(share, config.batch, replacement=True, generator=generator)
     batch = vary(pairs.take(chosen), generator, swap=swap)
-    if people == 2:
-        both = [
-            vary_bodies(person, generator, config.limbs, 0.0)
-            for person in (batch.action, batch.reaction)
-        ]
-        motion, lengths = vary_pace(torch.cat(both, dim=2), batch.lengths, generator, config.pace)
-        return Pairs(motion[:, :, :JOINTS], motion[:, :, JOINTS:], lengths, batch.labels)
     motion = vary_bodies(batch.reaction, generator, config.limbs, config.turn)
     return batch.with_reactions(*vary_pace(motion, batch.lengths, generator, config.pace))
 
