@@ -34,6 +34,9 @@ namespace AgentServer.Unity
         [SerializeField, Tooltip("Get commands without carrying them out: another renderer acts.")]
         bool _mirror;
 
+        [SerializeField, Tooltip("Get motions that are made while they play, for a Generated Motion.")]
+        bool _playsMotion;
+
         [Header("Telemetry")]
         [SerializeField, Tooltip("Watch poses, forecasts and decisions over a second connection.")]
         bool _telemetry;
@@ -67,6 +70,9 @@ namespace AgentServer.Unity
 
         /// <summary>A command is cut short, for a reason: stop at once, and say nothing.</summary>
         public event Action<CommandMessage, string> CommandCancelled;
+
+        /// <summary>More of the motion of the command that is under way.</summary>
+        public event Action<PoseStreamMessage> MotionReceived;
 
         /// <summary>The room, after each welcome and whenever it changes.</summary>
         public event Action<SceneState> SceneChanged;
@@ -110,6 +116,13 @@ namespace AgentServer.Unity
         {
             get => _takeOver;
             set => _takeOver = value;
+        }
+
+        /// <summary>Whether motions that are made while they play are wanted; from the next Connect on.</summary>
+        public bool PlaysMotion
+        {
+            get => _playsMotion;
+            set => _playsMotion = value;
         }
 
         /// <summary>Where the renderer's connection stands.</summary>
@@ -204,6 +217,7 @@ namespace AgentServer.Unity
             ConnectionSettings settings = Server.For(Role.Renderer);
             settings.TakeOver = _takeOver;
             settings.Mirror = _mirror;
+            settings.PlaysMotion = _playsMotion;
             var made = new RendererClient(settings, _transports ?? _platform.Factory, _clock)
             {
                 Objects = () => Objects == null ? null : Objects(),
@@ -218,6 +232,7 @@ namespace AgentServer.Unity
                 CommandCancelled?.Invoke(command, reason);
                 _onCancelled.Invoke(command);
             };
+            made.MotionReceived += stretch => MotionReceived?.Invoke(stretch);
             made.SceneChanged += scene =>
             {
                 SceneChanged?.Invoke(scene);

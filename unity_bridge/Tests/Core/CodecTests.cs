@@ -379,6 +379,9 @@ namespace AgentServer.Tests
             var packedStream = (PackedPoseStreamMessage)_msgpack.DecodeServer(_msgpack.Encode(stream));
             Assert.AreEqual(Bytes("0000803f 00000040 00004040"), packedStream.Positions);
             Assert.IsTrue(packedStream.IsLast);
+            PoseStreamMessage again = Packed.Unpack(packedStream);
+            Assert.AreEqual(new Point3(1, 2, 3), again.Positions[0][0]);
+            Assert.AreEqual("head", again.Joints[0]);
         }
 
         [Test]

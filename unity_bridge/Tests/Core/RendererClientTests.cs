@@ -162,6 +162,24 @@ namespace AgentServer.Tests
         }
 
         [Test]
+        public void MotionIsHandedOnForTheCommandUnderWayAlone()
+        {
+            var frames = new List<int>();
+            _renderer.MotionReceived += stretch => frames.Add(stretch.FirstFrame);
+            Say(Make.Command("a", 1));
+            Say(Motion("a", 0));
+            Say(Motion("b", 5));
+            Say(Motion("a", 1));
+            _renderer.Start("a");
+            _renderer.Done("a");
+            Say(Motion("a", 2));
+            Assert.AreEqual(new[] { 0, 1 }, frames);
+        }
+
+        static PoseStreamMessage Motion(string command, int frame) => new PoseStreamMessage(
+            command, frame, 25, new[] { "torso" }, new[] { new[] { new Point3(0, 1, 0) } });
+
+        [Test]
         public void AMirrorSeesCommandsAndSaysNothing()
         {
             Build(isMirror: true);

@@ -40,6 +40,12 @@ namespace AgentServer
         /// </summary>
         public event Action<CommandMessage, string> CommandCancelled;
 
+        /// <summary>
+        /// More of the motion of the command that is under way; it needs
+        /// <see cref="ConnectionSettings.PlaysMotion"/>.
+        /// </summary>
+        public event Action<PoseStreamMessage> MotionReceived;
+
         /// <summary>The room, after each welcome and whenever it changes.</summary>
         public event Action<SceneState> SceneChanged;
 
@@ -129,6 +135,13 @@ namespace AgentServer
         {
             if (message is CommandMessage command) OnCommand(command);
             else if (message is SceneState scene) SceneChanged?.Invoke(scene);
+            else if (message is PoseStreamMessage stretch) OnMotion(stretch);
+            else if (message is PackedPoseStreamMessage packed) OnMotion(Packed.Unpack(packed));
+        }
+
+        void OnMotion(PoseStreamMessage stretch)
+        {
+            if (Ledger.Running?.Id == stretch.CommandId) MotionReceived?.Invoke(stretch);
         }
 
         void OnCommand(CommandMessage command)

@@ -22,6 +22,31 @@ namespace AgentServer
             return message;
         }
 
+        /// <summary>A motion of the MessagePack coding as one of the JSON coding: its whole frames.</summary>
+        public static PoseStreamMessage Unpack(PackedPoseStreamMessage stretch)
+        {
+            int joints = stretch.Joints.Count;
+            int count = joints == 0 ? 0 : stretch.Positions.Length / (12 * joints);
+            var numbers = new float[3 * joints * count];
+            var data = (byte[])stretch.Positions.Clone();
+            if (!BitConverter.IsLittleEndian)
+                for (int start = 0; start < data.Length; start += 4) Array.Reverse(data, start, 4);
+            Buffer.BlockCopy(data, 0, numbers, 0, 4 * numbers.Length);
+            var frames = new Point3[count][];
+            for (int f = 0; f < frames.Length; f++)
+            {
+                frames[f] = new Point3[joints];
+                for (int j = 0; j < joints; j++)
+                {
+                    int at = 3 * (f * joints + j);
+                    frames[f][j] = new Point3(numbers[at], numbers[at + 1], numbers[at + 2]);
+                }
+            }
+            return new PoseStreamMessage(
+                stretch.CommandId, stretch.FirstFrame, stretch.RateHz, stretch.Joints, frames,
+                stretch.IsLast, stretch.Fallback);
+        }
+
         /// <summary>Numbers as little-endian float32.</summary>
         public static byte[] Floats(float[] numbers)
         {

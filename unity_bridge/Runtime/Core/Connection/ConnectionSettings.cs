@@ -33,6 +33,9 @@ namespace AgentServer
         /// <summary>Renderers: get commands, and send no acks.</summary>
         public bool Mirror { get; set; }
 
+        /// <summary>Renderers: get motions that are made while they play.</summary>
+        public bool PlaysMotion { get; set; }
+
         /// <summary>Sensors: what is told of the face.</summary>
         public FaceKind Face { get; set; } = FaceKind.Expected;
 

@@ -6,11 +6,21 @@ namespace AgentServer
     /// <summary>Makes the first message of every connection.</summary>
     sealed class HelloSource
     {
-        static readonly string[] Capabilities = { "heartbeat" };
+        static readonly string[] OthersCapabilities = { "heartbeat" };
         static readonly string[] RendererCapabilities = { "heartbeat", "resume", "progress" };
+        static readonly string[] PlayerCapabilities = { "heartbeat", "resume", "progress", "pose_stream" };
 
         readonly ConnectionSettings _settings;
         readonly string _instance = Guid.NewGuid().ToString("N");
+
+        string[] Capabilities
+        {
+            get
+            {
+                if (_settings.Role != Role.Renderer) return OthersCapabilities;
+                return _settings.PlaysMotion ? PlayerCapabilities : RendererCapabilities;
+            }
+        }
 
         public HelloSource(ConnectionSettings settings)
         {
@@ -30,7 +40,7 @@ namespace AgentServer
                 token: _settings.Token,
                 session: _settings.Session,
                 role: _settings.Role,
-                capabilities: _settings.Role == Role.Renderer ? RendererCapabilities : Capabilities,
+                capabilities: Capabilities,
                 face: _settings.Face,
                 mirror: _settings.Mirror,
                 takeOver: _settings.TakeOver,

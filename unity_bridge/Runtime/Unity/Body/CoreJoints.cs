@@ -40,6 +40,12 @@ namespace AgentServer.Unity
         /// <summary>Number of joints.</summary>
         public const int Count = 9;
 
+        static readonly string[] Streamed =
+        {
+            "head", "neck", "torso", "left_shoulder", "left_elbow", "left_hand",
+            "right_shoulder", "right_elbow", "right_hand",
+        };
+
         static readonly int[] Mirrored = { 0, 1, 2, 6, 7, 8, 3, 4, 5 };
 
         /// <summary>Where each joint is, in metres.</summary>
@@ -71,6 +77,21 @@ namespace AgentServer.Unity
             IReadOnlyList<Point3> points = forecast.Positions[frame];
             if (points.Count != Count) return false;
             for (int i = 0; i < Count; i++) Set(i, points[i].X, points[i].Y, points[i].Z, 1);
+            return true;
+        }
+
+        /// <summary>Takes the present pose of a motion, whose left is the agent's own.</summary>
+        /// <returns>False if nothing plays, or a joint is missing.</returns>
+        public bool Take(PoseStreamPlayer player)
+        {
+            for (int i = 0; i < Count; i++)
+            {
+                Point3 place;
+                if (!player.Joint(Streamed[i], out place)) return false;
+                // Right-handed and facing +z: to Unity's axes x changes its sign.
+                Positions[i] = new Vector3(-(float)place.X, (float)place.Y, (float)place.Z);
+                Confidence[i] = 1;
+            }
             return true;
         }
 
