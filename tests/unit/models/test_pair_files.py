@@ -9,11 +9,14 @@ import pytest
 
 pytest.importorskip("torch", reason="needs the train extra")
 
+from typer.testing import CliRunner
+
 from agent_server.domain.skeleton import SkeletonFrame
 from agent_server.errors import InvalidInput, RecordingError
 from agent_server.recording.reader import open_recording
 from agent_server.skeleton.formats import get_format
 from agent_server.skeleton.pair import JOINT_NAMES, PARENTS
+from models.__main__ import app
 from models.data.bvh import read_bvh
 from models.export.pair_files import PairMotion, write_pair
 from models.export.pair_recording import AWAY_M
@@ -141,3 +144,20 @@ def test_an_array_file_keeps_both_lengths_and_others_are_refused(tmp_path: Path)
         assert (len(arrays["action"]), len(arrays["reaction"])) == (12, 9)
     with pytest.raises(InvalidInput, match=r"ends in none of \.bvh, \.glb, \.mcap, \.npz"):
         write_pair(motion(), tmp_path / "pair.fbx")
+
+
+def test_a_label_is_enough_for_the_bundle_that_comes_along(tmp_path: Path) -> None:
+    def generate(*words: object) -> object:
+        given = ["generate", "interaction", "--out", str(tmp_path / "two.glb"), *map(str, words)]
+        return CliRunner().invoke(app, given)
+
+    made = generate("--model", "bigraphdiff", "--label", "kicking", "--seed", 3, "--frames", 5)
+    assert made.exit_code == 0, made.output
+    document, data = read_glb(tmp_path / "two.glb")
+    assert len(rows_of(document, data, 0)) == 5 and (tmp_path / "two.png").exists()
+    with pytest.raises(InvalidInput, match="none of bigraphdiff_sbu's: walking, kicking"):
+        raise generate("--model", "bigraphdiff", "--label", "dancing").exception
+    with pytest.raises(InvalidInput, match="--frames 0: make 1 to 3000 frames"):
+        raise generate("--model", "bigraphdiff", "--label", "kicking", "--frames", 0).exception
+    alone = generate("--label", "kicking")
+    assert alone.exit_code == 2 and "--data" in alone.output
