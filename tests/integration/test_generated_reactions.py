@@ -91,29 +91,29 @@ async def test_decisions_go_on_while_a_motion_is_made_and_its_end_stops_the_maki
     going.set()
     reactor = HandReactor(waits=lambda: going.wait(5.0))
     decisions = []
-    async with live(reacting(reactor), SETTINGS, alter_rule=generated) as server:
-        async with (
-            server.join("renderer", hello=PLAYS) as renderer,
-            server.join("monitor") as monitor,
-            server.join("sensor") as sensor,
-            asyncio.TaskGroup() as group,
-        ):
-            listening = group.create_task(all_decisions(monitor, decisions))
-            going.clear()  # the generator stands still from its first pose on
-            await send_ears(sensor, 4.0)
-            command = await next_of(renderer, m.CommandMessage)
-            await asyncio.sleep(0.2)
-            commanded = next(i for i, one in enumerate(decisions) if one.decision.command)
-            assert len(decisions) > commanded + 5
-            reactor.made = 0
-            for status in ("started", "failed"):
-                await renderer.send(m.AckMessage(command.id, status))
-            await asyncio.sleep(0.1)
-            going.set()
-            await asyncio.sleep(0.3)
-            assert 0 < reactor.made < 30  # the stretch that was under way, and no other
-            assert server.hub.sessions["s"].counters["reactions_generated"] == 0
-            listening.cancel()
+    async with (
+        live(reacting(reactor), SETTINGS, alter_rule=generated) as server,
+        server.join("renderer", hello=PLAYS) as renderer,
+        server.join("monitor") as monitor,
+        server.join("sensor") as sensor,
+        asyncio.TaskGroup() as group,
+    ):
+        listening = group.create_task(all_decisions(monitor, decisions))
+        going.clear()  # the generator stands still from its first pose on
+        await send_ears(sensor, 4.0)
+        command = await next_of(renderer, m.CommandMessage)
+        await asyncio.sleep(0.2)
+        commanded = next(i for i, one in enumerate(decisions) if one.decision.command)
+        assert len(decisions) > commanded + 5
+        reactor.made = 0
+        for status in ("started", "failed"):
+            await renderer.send(m.AckMessage(command.id, status))
+        await asyncio.sleep(0.1)
+        going.set()
+        await asyncio.sleep(0.3)
+        assert 0 < reactor.made < 30  # the stretch that was under way, and no other
+        assert server.hub.sessions["s"].counters["reactions_generated"] == 0
+        listening.cancel()
 
 
 async def test_a_replay_writes_the_same_log_whatever_became_of_the_motion(tmp_path):

@@ -14,8 +14,8 @@ from agent_server.qa.tools.annotate import annotate
 from agent_server.qa.tools.anonymise import anonymise
 from agent_server.qa.tools.cut import cut, decision_time
 from agent_server.qa.tools.info import describe
-from agent_server.recording.items import read_entries
 from agent_server.qa.tools.merge import merge
+from agent_server.recording.items import read_entries
 from agent_server.recording.reader import open_recording
 from agent_server.service.replay import replay
 from tests.support.live_recordings import write_live
