@@ -77,9 +77,9 @@ class TrainConfig:
     """
 
     network: NetworkConfig = NetworkConfig()
-    steps: int = 800
+    steps: int = 600
     batch: int = 24
-    learning_rate: float = 5e-4
+    learning_rate: float = 1e-3
     critic_rate: float = 1e-3
     critic_steps: int = 2
     judge_rate: float = 5e-4
@@ -92,8 +92,8 @@ class TrainConfig:
     classes: float = 0.1
     penalty: float = 10.0
     ema: float = 0.998
-    validate_every: int = 100
-    judged_from: int = 400
+    validate_every: int = 150
+    judged_from: int = 300
     synthetic_sequences: int = 2_000
 
     def __post_init__(self) -> None:
