@@ -46,6 +46,7 @@ test("the page's address says the session, the token and the server's paths", ()
     standInUrl: "https://host/some/prefix/v1/stand-in",
     streamsUrl: "https://host/some/prefix/v1/streams",
     modelsUrl: "https://host/some/prefix/v1/models/",
+    labelUrl: "https://host/some/prefix/label.html#token=a%2Bb",
     sendsPictures: false,
   });
   const plain = placeOf("http://127.0.0.1:8765/");
