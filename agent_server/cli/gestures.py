@@ -16,13 +16,7 @@ import typer
 from rich.console import Console
 from rich.markup import escape
 
-from agent_server.cli.options import (
-    HostOption,
-    JsonOption,
-    PortOption,
-    run,
-    settings_with,
-)
+from agent_server.cli.options import HostOption, JsonOption, PortOption, run, settings_with
 from agent_server.cli.prompts import Prompter
 from agent_server.cli.status import INTERRUPTED
 from agent_server.clock import SystemClock

@@ -15,6 +15,7 @@ from models.cli.options import (
     INTERACTION_RUNS,
     PREDICTOR,
     SAMPLER,
+    BundleOutOption,
     CacheOption,
     DataOption,
     InteractionRunsOption,
@@ -42,7 +43,7 @@ VersionOption = Annotated[str, typer.Option("--version", help="Version of the mo
 def export_ma_wgan(
     data: DataOption,
     run: RunsOption,
-    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = PREDICTOR,
+    out: BundleOutOption = PREDICTOR,
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
 ) -> None:
@@ -54,7 +55,7 @@ def export_ma_wgan(
 def export_simlpe(
     data: DataOption,
     run: RunsOption,
-    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    out: BundleOutOption,
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
 ) -> None:
@@ -77,7 +78,7 @@ def export_drawn(
         Path | None,
         typer.Option("--generator", help="Run of a manifold-aware GAN with noise that draws."),
     ] = None,
-    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = SAMPLER,
+    out: BundleOutOption = SAMPLER,
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
 ) -> None:
@@ -92,7 +93,7 @@ def export_interformer(
     data: DataOption,
     run: RunOption,
     predictor: PredictorBundleOption = PREDICTOR,
-    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")] = CLASSIFIER,
+    out: BundleOutOption = CLASSIFIER,
     version: VersionOption = "0.1.0",
     cache: CacheOption = CACHE,
 ) -> None:
@@ -106,7 +107,7 @@ def export_interformer(
 def export_reaction_model(
     data: DataOption,
     run: RunOption,
-    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    out: BundleOutOption,
     version: VersionOption = "0.1.0",
     runs: InteractionRunsOption = INTERACTION_RUNS,
 ) -> None:
@@ -119,7 +120,7 @@ def export_reaction_model(
 def export_bigraphdiff(
     data: DataOption,
     run: RunOption,
-    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    out: BundleOutOption,
     version: VersionOption = "0.1.0",
     runs: InteractionRunsOption = INTERACTION_RUNS,
 ) -> None:
@@ -132,7 +133,7 @@ def export_bigraphdiff(
 def export_affect_model(
     data: DataOption,
     run: RunOption,
-    out: Annotated[Path, typer.Option("--out", help="Folder of the bundle.")],
+    out: BundleOutOption,
     version: VersionOption = "0.1.0",
 ) -> None:
     """Export a model that reads affect, and measure it on the test fifth of the pictures."""

@@ -20,6 +20,7 @@ from models.simlpe.config import TrainConfig as SimlpeConfig
 
 DataOption = Annotated[Path, typer.Option("--data", help="Folder that holds the set folders.")]
 OutOption = Annotated[Path, typer.Option("--out", help="Folder of the run.")]
+BundleOutOption = Annotated[Path, typer.Option("--out", help="Folder of the bundle.")]
 SeedOption = Annotated[int, typer.Option("--seed", help="Of everything random.")]
 CacheOption = Annotated[Path, typer.Option("--cache", help="Where generated recordings are kept.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object on one line.")]

@@ -8,21 +8,18 @@ import numpy as np
 import torch
 
 from agent_server.inference.manifest import (
-    CARD_FILE,
     FORMAT_VERSION,
     GOLDEN_FILE,
     MODEL_FILE,
     AffectManifest,
     DataSource,
-    Training,
-    read_manifest,
-    write_manifest,
 )
 from models.affect.runs import Trained
 from models.data.labelled_faces import LICENCE, SOURCE, read_faces, test_split
 from models.evaluation.affect import affect_measures, affect_report, read_affect
 from models.evaluation.latency import latency_ms
 from models.export.onnx import OPSET, check_parity, is_batch_exact, write_onnx
+from models.export.publish import publish, training_of
 from models.ops.session import OnnxModel
 
 WEIGHTS_LICENCE = "Apache-2.0"
@@ -81,21 +78,9 @@ def export_affect(
             },
             source=source,
             features=features.shape[1],
-            training=Training(
-                command=info["command"],
-                seed=info["seed"],
-                data=[DataSource(SOURCE, LICENCE, synthetic=True)],
-                wall_s=info["wall_s"],
-                hardware=info["hardware"],
-            ),
+            training=training_of(info, [DataSource(SOURCE, LICENCE, synthetic=True)]),
         )
-        (draft / CARD_FILE).write_text(_card(manifest), "utf-8")
-        write_manifest(draft, manifest)
-        checked = read_manifest(draft, AffectManifest)
-        out.mkdir(parents=True, exist_ok=True)
-        for file in draft.iterdir():
-            (out / file.name).write_bytes(file.read_bytes())
-    return checked
+        return publish(draft, out, manifest, _card(manifest))
 
 
 def _card(manifest: AffectManifest) -> str:

@@ -13,19 +13,16 @@ from torch import nn
 from agent_server.domain.arrays import Float32
 from agent_server.domain.motion import RATE_HZ
 from agent_server.inference.manifest import (
-    CARD_FILE,
     FORMAT_VERSION,
     GOLDEN_FILE,
     MODEL_FILE,
     DataSource,
     MotionManifest,
     SkeletonName,
-    Training,
-    read_manifest,
-    write_manifest,
 )
 from models.data import cmu, h36m, synthetic
 from models.export.onnx import OPSET, check_parity, is_batch_exact, write_onnx
+from models.export.publish import publish, training_of
 from models.ops.session import OnnxModel
 
 GOLDEN_ROWS = 6
@@ -131,22 +128,10 @@ def write_bundle(
             batch_exact=is_batch_exact(model, export.windows),
             files={},
             licence=export.weights_licence,
-            training=Training(
-                command=export.info["command"],
-                seed=export.info["seed"],
-                data=list(export.sources),
-                wall_s=export.info["wall_s"],
-                hardware=export.info["hardware"],
-            ),
+            training=training_of(export.info, export.sources),
             results=results,
         )
-        (draft / CARD_FILE).write_text(card(manifest))
-        write_manifest(draft, manifest)
-        checked = read_manifest(draft)
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in draft.iterdir():
-            (folder / file.name).write_bytes(file.read_bytes())
-    return checked
+        return publish(draft, folder, manifest, card(manifest))
 
 
 def _golden_input(windows: Float32) -> Float32:

@@ -5,7 +5,7 @@ from typing import Any
 
 from agent_server.config import DecideSettings
 from agent_server.domain.gesture import GESTURES
-from agent_server.inference.manifest import MotionManifest
+from agent_server.inference.manifest import Manifest, MotionManifest, Training
 
 _DECIDE = DecideSettings()
 
@@ -119,6 +119,7 @@ def sampler_card(manifest: MotionManifest) -> str:
             "",
             *made(
                 manifest,
+                manifest.training,
                 f"the checkpoint is that of update {manifest.results['update']}, chosen on "
                 "validation people and recordings",
             ),
@@ -180,7 +181,7 @@ def classifier_card(manifest: MotionManifest) -> str:
     return "\n".join([*lines, "", *tail(manifest)])
 
 
-def head(manifest: MotionManifest, sentence: str) -> str:
+def head(manifest: Manifest, sentence: str) -> str:
     """Title, a sentence, and what the weights are."""
     return (
         f"# {manifest.name} {manifest.version}\n\n{sentence}\n\n"
@@ -232,13 +233,16 @@ def tail(manifest: MotionManifest) -> list[str]:
         f"- torch and ONNX differ by at most {results['onnx_difference']:.1e}",
         f"- a row of a batch of up to 16 has {same} a batch of one",
         "",
-        *made(manifest, "the checkpoint was chosen on validation people and recordings"),
+        *made(
+            manifest,
+            manifest.training,
+            "the checkpoint was chosen on validation people and recordings",
+        ),
     ]
 
 
-def made(manifest: MotionManifest, chosen: str) -> list[str]:
+def made(manifest: Manifest, training: Training, chosen: str) -> list[str]:
     """Data, command, time and the choice of the checkpoint."""
-    training = manifest.training
     return [
         "## How it was made",
         *(f"- {s.name}: {_origin(s.synthetic)}, licence: {s.licence}" for s in training.data),
@@ -246,18 +250,18 @@ def made(manifest: MotionManifest, chosen: str) -> list[str]:
         f"- seed {training.seed}, {training.wall_s / 60:.0f} minutes on {training.hardware}",
         f"- {chosen}",
         "",
-        _caveat(manifest),
+        _caveat(manifest, training),
         "",
     ]
 
 
-def _caveat(manifest: MotionManifest) -> str:
+def _caveat(manifest: Manifest, training: Training) -> str:
     if manifest.licence.startswith("research only"):
         return (
             "Research only: these weights may be used to check the figures above and for nothing "
             "else. They are part of neither the wheel nor the image."
         )
-    if any(source.synthetic for source in manifest.training.data):
+    if any(source.synthetic for source in training.data):
         return (
             "The synthetic motion is made up by a program. It says nothing yet about how the "
             "model does on real people performing these gestures."

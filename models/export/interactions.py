@@ -8,16 +8,11 @@ import numpy as np
 import torch
 from torch.export import Dim
 
-from agent_server.errors import BundleError
 from agent_server.inference.manifest import (
-    CARD_FILE,
     FORMAT_VERSION,
     GOLDEN_FILE,
     MODEL_FILE,
     DataSource,
-    Training,
-    read_manifest,
-    write_manifest,
 )
 from models.bigraphdiff.config import NetworkConfig
 from models.bigraphdiff.diffusion import Denoise, Normaliser
@@ -34,7 +29,8 @@ from models.evaluation.interaction_pairs import PairCourt
 from models.evaluation.latency import percentiles_ms
 from models.export.bundle import RESEARCH_LICENCE
 from models.export.interactions_card import interactions_card
-from models.export.onnx import OPSET, TOLERANCE, store_halves, write_graph
+from models.export.onnx import OPSET, require_close, store_halves, write_graph
+from models.export.publish import publish, training_of
 from models.training.run import read_info
 
 GOLDEN_ROWS = 4
@@ -97,22 +93,10 @@ def export_interactions(
             batch_exact=False,
             files={NORMALISER_FILE: ""},
             licence=RESEARCH_LICENCE,
-            training=Training(
-                command=info["command"],
-                seed=info["seed"],
-                data=[DataSource(spec.name, LICENCE, synthetic=False)],
-                wall_s=info["wall_s"],
-                hardware=info["hardware"],
-            ),
+            training=training_of(info, [DataSource(spec.name, LICENCE, synthetic=False)]),
             results=results,
         )
-        (draft / CARD_FILE).write_text(interactions_card(manifest))
-        write_manifest(draft, manifest)
-        checked = read_manifest(draft, InteractionManifest)
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in draft.iterdir():
-            (folder / file.name).write_bytes(file.read_bytes())
-    return checked
+        return publish(draft, folder, manifest, interactions_card(manifest))
 
 
 def write_denoiser(network: Denoiser, path: Path) -> None:
@@ -165,12 +149,7 @@ def check_parity(network: Denoiser, denoise: Denoise, given: tuple[torch.Tensor,
         expected = network(*given)
     noisy, lengths, step, words = given
     worst = float((expected - denoise(noisy, lengths, step, words)).abs().max())
-    if not worst <= TOLERANCE:
-        raise BundleError(
-            f"torch and ONNX differ by {worst:.2g}, more than {TOLERANCE}: look for an operator "
-            "that the exporter translates differently"
-        )
-    return worst
+    return require_close(worst)
 
 
 def golden_input(

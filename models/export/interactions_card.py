@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from models.bigraphdiff.manifest import InteractionManifest
-from models.export.card import percent
+from models.export.card import head, made, percent
 
 ROWS = {
     "real": "the true interactions",
@@ -20,16 +20,10 @@ FIGURES = (
 
 def interactions_card(manifest: InteractionManifest) -> str:
     """Markdown: what the model is, what was measured, how it was made."""
-    results, training = manifest.results, manifest.training
+    results = manifest.results
     latency = results["latency"]
     lines = [
-        f"# {manifest.name} {manifest.version}",
-        "",
-        "Makes the motion of two people from a label of what they do.",
-        "",
-        f"{manifest.parameters:,} parameters, ONNX opset {manifest.opset}, weights under "
-        f"{manifest.licence}.",
-        "",
+        head(manifest, "Makes the motion of two people from a label of what they do."),
         f"`model.onnx` takes the noise away from up to {manifest.frames} frames at "
         f"{manifest.rate_hz} Hz: two people of 15 joints as offsets from their torsos, scaled by "
         "`normaliser.npz`; metres, y up, origin in the middle between both torsos at the first "
@@ -63,15 +57,11 @@ def interactions_card(manifest: InteractionManifest) -> str:
         f"- torch and ONNX differ by at most {results['onnx_difference']:.1e} in a step, where "
         "joints are of about unit size",
         "",
-        "## How it was made",
-        *(f"- {one.name}: real recordings, licence: {one.licence}" for one in training.data),
-        f"- `{training.command}`",
-        f"- seed {training.seed}, {training.wall_s / 60:.0f} minutes on {training.hardware}",
-        "- on the whole training split; nothing was chosen by the test split",
-        "",
-        "Research only: these weights may be used to check the figures above and for nothing "
-        "else. They are part of neither the wheel nor the image.",
-        "",
+        *made(
+            manifest,
+            manifest.training,
+            "on the whole training split; nothing was chosen by the test split",
+        ),
     ]
     return "\n".join(lines)
 

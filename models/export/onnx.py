@@ -131,9 +131,18 @@ def check_parity(network: nn.Module, model: OnnxModel, values: Float32) -> float
     with torch.no_grad():
         expected = network(torch.from_numpy(values)).numpy()
     worst = float(np.abs(model.batched(values) - expected).max())
+    return require_close(worst)
+
+
+def require_close(worst: float, unit: str = "") -> float:
+    """Give the largest difference by torch and ONNX back if it is small enough.
+
+    Raises:
+        BundleError: If it is above 1e-4 or not a number.
+    """
     if not worst <= TOLERANCE:
         raise BundleError(
-            f"torch and ONNX differ by {worst:.2g}, more than {TOLERANCE}: look for an "
+            f"torch and ONNX differ by {worst:.2g}{unit}, more than {TOLERANCE}: look for an "
             "operator that the exporter translates differently"
         )
     return worst

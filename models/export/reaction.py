@@ -8,24 +8,20 @@ import numpy as np
 import torch
 from torch.export import Dim
 
-from agent_server.errors import BundleError
 from agent_server.inference.manifest import (
-    CARD_FILE,
     FORMAT_VERSION,
     GOLDEN_FILE,
     MODEL_FILE,
     DataSource,
     ReactionManifest,
-    Training,
-    read_manifest,
-    write_manifest,
 )
 from models.data.interactions import INTERACTION_SETS, JOINTS, LICENCE
 from models.evaluation.interaction import DRAWS, JUDGES, Court, stand_still
 from models.evaluation.interaction_rows import reacting
 from models.evaluation.latency import reaction_latency
 from models.export.bundle import RESEARCH_LICENCE
-from models.export.onnx import OPSET, TOLERANCE, write_graph
+from models.export.onnx import OPSET, require_close, write_graph
+from models.export.publish import publish, training_of
 from models.export.reaction_card import reaction_card
 from models.export.reaction_range import training_range
 from models.interformer.generator.generate import Encode, Step, TorchCore, generate
@@ -96,23 +92,11 @@ def export_reaction(
             batch_exact=False,
             files={ENCODER_FILE: ""},
             licence=RESEARCH_LICENCE,
-            training=Training(
-                command=info["command"],
-                seed=info["seed"],
-                data=[DataSource(spec.name, LICENCE, synthetic=False)],
-                wall_s=info["wall_s"],
-                hardware=info["hardware"],
-            ),
+            training=training_of(info, [DataSource(spec.name, LICENCE, synthetic=False)]),
             results=results,
             range=training_range(spec.read(data, "train"), spec.rate_hz),
         )
-        (draft / CARD_FILE).write_text(reaction_card(manifest))
-        write_manifest(draft, manifest)
-        checked = read_manifest(draft, ReactionManifest)
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in draft.iterdir():
-            (folder / file.name).write_bytes(file.read_bytes())
-    return checked
+        return publish(draft, folder, manifest, reaction_card(manifest))
 
 
 def write_graphs(network: Generator, folder: Path) -> None:
@@ -175,12 +159,7 @@ def check_parity(network: Generator, core: OnnxCore, given: tuple[torch.Tensor, 
         for each in (TorchCore(network), core)
     )
     worst = float((expected - found).abs().max())
-    if not worst <= TOLERANCE:
-        raise BundleError(
-            f"torch and ONNX differ by {worst:.2g} m, more than {TOLERANCE}: look for an operator "
-            "that the exporter translates differently"
-        )
-    return worst
+    return require_close(worst, " m")
 
 
 def golden_input(

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from agent_server.inference.manifest import ReactionManifest
-from models.export.card import percent
+from models.export.card import head, made, percent
 
 ROWS = {
     "real": "the true reactions",
@@ -15,16 +15,10 @@ ROWS = {
 
 def reaction_card(manifest: ReactionManifest) -> str:
     """Markdown: what the model is, what was measured, how it was made."""
-    results, training = manifest.results, manifest.training
+    results = manifest.results
     latency = results["latency"]
     lines = [
-        f"# {manifest.name} {manifest.version}",
-        "",
-        "Makes the reaction of a person to the action of another one.",
-        "",
-        f"{manifest.parameters:,} parameters, ONNX opset {manifest.opset}, weights under "
-        f"{manifest.licence}.",
-        "",
+        head(manifest, "Makes the reaction of a person to the action of another one."),
         f"`encoder.onnx` reads an action of up to {manifest.frames} frames at "
         f"{manifest.rate_hz} Hz: 15 joints, metres, y up, origin in the middle between both "
         "torsos at the first frame, x from the first person to the second. `model.onnx` writes "
@@ -55,15 +49,11 @@ def reaction_card(manifest: ReactionManifest) -> str:
         f"- torch and ONNX differ by at most {results['onnx_difference_m']:.1e} m in "
         "a whole reaction",
         "",
-        "## How it was made",
-        *(f"- {one.name}: real recordings, licence: {one.licence}" for one in training.data),
-        f"- `{training.command}`",
-        f"- seed {training.seed}, {training.wall_s / 60:.0f} minutes on {training.hardware}",
-        "- on the whole training split; nothing was chosen by the test split",
-        "",
-        "Research only: these weights may be used to check the figures above and for nothing "
-        "else. They are part of neither the wheel nor the image.",
-        "",
+        *made(
+            manifest,
+            manifest.training,
+            "on the whole training split; nothing was chosen by the test split",
+        ),
     ]
     return "\n".join(lines)
 

@@ -11,16 +11,11 @@ import torch
 
 from agent_server.domain.arrays import Float32
 from agent_server.domain.motion import PREDICTED_FRAMES, RATE_HZ, SEEN_FRAMES
-from agent_server.errors import BundleError
 from agent_server.inference.manifest import (
-    CARD_FILE,
     FORMAT_VERSION,
     GOLDEN_FILE,
     MODEL_FILE,
     MotionManifest,
-    Training,
-    read_manifest,
-    write_manifest,
 )
 from models.evaluation.latency import percentiles_ms
 from models.evaluation.protocols import protocol_named
@@ -32,7 +27,8 @@ from models.evaluation.sampled import (
 )
 from models.export.bundle import GOLDEN_ROWS, LICENCE, SERVER_SOURCES
 from models.export.card import sampler_card
-from models.export.onnx import OPSET, TOLERANCE, write_graph
+from models.export.onnx import OPSET, require_close, write_graph
+from models.export.publish import publish, training_of
 from models.hp_gan.sampler import DRAWS, Sampler
 from models.hp_gan.train import load_hp_gan
 from models.ma_wgan.train import load_predictor
@@ -98,23 +94,11 @@ def export_sampler(
             batch_exact=False,  # the server runs one window's draws at a time
             files={},
             licence=LICENCE,
-            training=Training(
-                info["command"],
-                info["seed"],
-                list(SERVER_SOURCES),
-                info["wall_s"],
-                info["hardware"],
-            ),
+            training=training_of(info, SERVER_SOURCES),
             results=results,
             draws=DRAWS,
         )
-        (draft / CARD_FILE).write_text(sampler_card(manifest))
-        write_manifest(draft, manifest)
-        written = read_manifest(draft)
-        folder.mkdir(parents=True, exist_ok=True)
-        for file in draft.iterdir():
-            (folder / file.name).write_bytes(file.read_bytes())
-    return written
+        return publish(draft, folder, manifest, sampler_card(manifest))
 
 
 def write_sampler(network: Sampler, seen: Float32, folder: Path) -> float:
@@ -143,8 +127,7 @@ def write_sampler(network: Sampler, seen: Float32, folder: Path) -> float:
         float(np.abs(got - want.numpy()).max())
         for got, want in zip(run(seen, draw), expected, strict=True)
     )
-    if not worst <= TOLERANCE:
-        raise BundleError(f"torch and ONNX differ by {worst:.2g}, more than {TOLERANCE}")
+    require_close(worst)
     still = np.repeat(seen[:1, :1], SEEN_FRAMES, axis=1)
     spread = np.linspace(0, len(seen) - 1, GOLDEN_ROWS - 1).astype(int)
     golden = np.concatenate([seen[spread], still])
