@@ -1,5 +1,6 @@
 """``agent-server serve``."""
 
+import gc
 import json
 import os
 import socket
@@ -98,6 +99,8 @@ async def _serve(hub: Hub, listener: socket.socket, access: Access, *, as_json: 
     console = Console(stderr=True)
     here = address(listener, is_secure=hub.settings.server.tls_cert is not None)
     async with serving(hub, listener, access) as stopped:
+        # Modules and models stay for good; no collection need look at them again.
+        gc.freeze()
         if as_json:
             print(json.dumps({"address": here}), flush=True)
         console.print(f"agent-server listens on [bold]{here}[/]; Ctrl+C stops it")

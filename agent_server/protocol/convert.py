@@ -33,7 +33,6 @@ MAX_COORDINATE_M = 50.0
 """No joint is farther from its sensor."""
 
 
-@np.errstate(over="ignore", invalid="ignore")  # such numbers are refused by the checks below
 def skeleton_from_message(
     message: m.Skeleton | m.PackedSkeleton, stamp_ns: int | None = None
 ) -> SkeletonFrame:
@@ -57,13 +56,12 @@ def skeleton_from_message(
         if len(joints) != wanted:
             raise _wrong_count(message.format, wanted, len(joints))
         values = np.fromiter(chain.from_iterable(joints), np.float64, 4 * wanted)
-    rounded = values.round(JOINT_DECIMALS)
-    table = rounded.reshape(wanted, 4)
-    confidence = table[:, 3].tolist()
+    confidence = values[3::4].tolist()
     # A sum of squares within the limit has no term beyond it, and one call tells; a body far
     # from its sensor, and NaN, for which every comparison is false, are looked at one by one.
-    if not rounded.dot(rounded) <= limit * limit or min(confidence) < 0.0 or max(confidence) > 1.0:
-        _check_each(table, limit)
+    if not values.dot(values) <= limit * limit or min(confidence) < 0.0 or max(confidence) > 1.0:
+        _check_each(values.reshape(wanted, 4), limit)
+    table = values.round(JOINT_DECIMALS).reshape(wanted, 4)
     return SkeletonFrame(
         originating_ns=message.originating_ns if stamp_ns is None else stamp_ns,
         body_id=message.body_id,

@@ -1,6 +1,7 @@
 """Faces, gaze and calibration between the wire and the domain, checked as they come in."""
 
 from itertools import chain
+from typing import NoReturn
 
 import numpy as np
 
@@ -36,11 +37,11 @@ _ROTATIONS = frozenset(
 
 def round_points(points: Float64) -> Float64:
     """Points as they are taken in, from the wire or from an image."""
-    rounded: Float64 = np.round(points * STEPS_PER_PIXEL) / STEPS_PER_PIXEL
+    rounded: Float64 = np.rint(points * STEPS_PER_PIXEL)
+    rounded /= STEPS_PER_PIXEL
     return rounded
 
 
-@np.errstate(over="ignore", invalid="ignore")  # such numbers are refused by the checks below
 def landmarks_from_message(
     message: m.FacePoints | m.PackedFacePoints, stamp_ns: int | None = None
 ) -> FaceLandmarks:
@@ -55,8 +56,9 @@ def landmarks_from_message(
             is not finite, far outside the image, or the face has no size.
     """
     layout = FaceLayout(message.format)
-    points = round_points(_coordinates(message, layout))
+    points = _coordinates(message, layout)
     _check_points(points, message)
+    points = round_points(points)
     return FaceLandmarks(
         originating_ns=message.originating_ns if stamp_ns is None else stamp_ns,
         layout=layout,
@@ -241,30 +243,37 @@ def _wrong_count(layout: FaceLayout, got: str) -> InvalidInput:
 
 
 def _check_points(points: Float64, message: m.FacePoints | m.PackedFacePoints) -> None:
-    size = np.array((message.width, message.height, max(message.width, message.height)))
-    size = size[: points.shape[1]]
-    low, high = -MAX_SIZES_OFF * size, (1 + MAX_SIZES_OFF) * size
+    least, most = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+    sizes = (message.width, message.height, max(message.width, message.height))
     # NaN fails every comparison.
-    good = (points >= low) & (points <= high)
-    if not good.all():
-        point, axis = np.argwhere(~good)[0]
-        field = f"points[{point}][{axis}]"
-        value = points[point, axis]
-        code = "out_of_range" if np.isfinite(value) else "not_finite"
-        raise InvalidInput(
-            f"{field} is {value:g}, far outside an image of {message.width} x {message.height}: "
-            "send pixels of that image",
-            field=field,
-            code=code,
-        )
-    width = float(np.ptp(points[:, 0]))
-    if max(width, float(np.ptp(points[:, 1]))) < MIN_FACE_PX:
+    if not all(
+        low >= -MAX_SIZES_OFF * size and high <= (1 + MAX_SIZES_OFF) * size
+        for low, high, size in zip(least, most, sizes, strict=False)
+    ):
+        _find_outside(points, message)
+    width, height = most[0] - least[0], most[1] - least[1]
+    if max(width, height) < MIN_FACE_PX:
         raise InvalidInput(
             f"the face is {width:.1f} pixels wide: send pixels, not shares of the image, of a "
             f"face of at least {MIN_FACE_PX:g}",
             field="points",
             code="face_too_small",
         )
+
+
+def _find_outside(points: Float64, message: m.FacePoints | m.PackedFacePoints) -> NoReturn:
+    size = np.array((message.width, message.height, max(message.width, message.height)))
+    size = size[: points.shape[1]]
+    good = (points >= -MAX_SIZES_OFF * size) & (points <= (1 + MAX_SIZES_OFF) * size)
+    point, axis = np.argwhere(~good)[0]
+    field = f"points[{point}][{axis}]"
+    value = points[point, axis]
+    raise InvalidInput(
+        f"{field} is {value:g}, far outside an image of {message.width} x {message.height}: "
+        "send pixels of that image",
+        field=field,
+        code="out_of_range" if np.isfinite(value) else "not_finite",
+    )
 
 
 def _read_only(array: Float32) -> Float32:

@@ -16,7 +16,16 @@ class Pace:
         self._gap_ns = NS_PER_S // per_s
         self._due_ns = 0
 
-    def wait_ns(self, now_ns: int) -> int:
-        """Take note of a message; how long to wait before the next one is read."""
-        self._due_ns = max(self._due_ns, now_ns - NS_PER_S) + self._gap_ns
+    def wait_ns(self, now_ns: int) -> int | None:
+        """Take note of a message; how long to wait before the next one is read.
+
+        Returns:
+            None for who keeps the pace; 0 for who has sent some messages in a hurry, so that
+            others may have their turn.
+        """
+        earliest_ns = now_ns - NS_PER_S
+        if self._due_ns <= earliest_ns:
+            self._due_ns = earliest_ns + self._gap_ns
+            return None
+        self._due_ns += self._gap_ns
         return max(0, self._due_ns - now_ns)

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import math
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -23,15 +24,23 @@ class Batcher(Generic[Given, Result]):
     Args:
         name: Of the thread.
         work: Gives a result for each thing of a batch.
+        apart_s: Batches begin at least so far apart, in seconds. Who is alone waits for nobody;
+            where many ask, more of them are done together, which costs less.
 
     Attributes:
         largest_batch: The most that was done together.
         busy_since_s: When the present batch began, on ``time.monotonic``; None between batches.
     """
 
-    def __init__(self, name: str, work: Callable[[Sequence[Given]], Sequence[Result]]) -> None:
+    def __init__(
+        self,
+        name: str,
+        work: Callable[[Sequence[Given]], Sequence[Result]],
+        apart_s: float,
+    ) -> None:
         self._name = name
         self._work = work
+        self._apart_s = apart_s
         self._waiting: list[tuple[Given, asyncio.Future[Result]]] = []
         self._wake = asyncio.Event()
         self.largest_batch = 0
@@ -52,9 +61,14 @@ class Batcher(Generic[Given, Result]):
     async def run(self) -> None:
         """Serve requests until cancelled."""
         loop = asyncio.get_running_loop()
+        begun_s = -math.inf
         with ThreadPoolExecutor(1, thread_name_prefix=self._name) as thread:
             while True:
                 await self._wake.wait()
+                rest_s = begun_s + self._apart_s - time.monotonic()
+                if rest_s > 0.0 and len(self._waiting) < MAX_BATCH:
+                    await asyncio.sleep(rest_s)
+                begun_s = time.monotonic()
                 batch, self._waiting = self._waiting[:MAX_BATCH], self._waiting[MAX_BATCH:]
                 if not self._waiting:
                     self._wake.clear()

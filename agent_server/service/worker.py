@@ -25,6 +25,9 @@ from agent_server.stages.react import broken_off
 
 log = logging.getLogger(__name__)
 
+WINDOWS_APART_S = 0.01
+FACES_APART_S = 0.03
+"""How far apart batches begin where many ask; affect is averaged over a second and can wait."""
 MOST_REACTIONS = 16
 """So many reactions may wait for their next stretch; what comes beyond is not made."""
 
@@ -87,13 +90,13 @@ class InferenceWorker:
     def __init__(self, models: Models) -> None:
         self.models = models
         self.windows = Batcher[Window, Inference](
-            "inference", lambda windows: infer(self.models, windows)
+            "inference", lambda windows: infer(self.models, windows), WINDOWS_APART_S
         )
         self.faces = Batcher[Face, Float64](
-            "affect", lambda faces: read_affect(self.models.affect, faces)
+            "affect", lambda faces: read_affect(self.models.affect, faces), FACES_APART_S
         )
         self.reactions = Batcher[Iterator[Stretch], Stretch](
-            "reactions", lambda makings: list(map(_next_stretch, makings))
+            "reactions", lambda makings: list(map(_next_stretch, makings)), 0.0
         )
 
     @property

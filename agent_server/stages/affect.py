@@ -5,8 +5,10 @@ the inverse of each estimate's variance. It lags behind the face by about half i
 each sample states. What a person's neutral face comes to can be taken off (calibration).
 """
 
+import math
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
+from operator import mul
 
 import numpy as np
 
@@ -75,7 +77,7 @@ class AffectEstimator:
         self._models = models
         self._window_ns = settings.window_ms * NS_PER_MS
         self._source = ""
-        self._recent: deque[tuple[int, Float64]] = deque()
+        self._recent: deque[tuple[int, float, float, float, float]] = deque()
         self._neutral = np.zeros(2)
         self._calibration: Calibration | None = None
         self._neutral_faces: list[Float64] = []
@@ -111,7 +113,7 @@ class AffectEstimator:
         if source != self._source:
             self._source = source
             self._recent.clear()
-        self._recent.append((now_ns, estimate))
+        self._recent.append((now_ns, *estimate.tolist()))
         while now_ns - self._recent[0][0] >= self._window_ns and len(self._recent) > 1:
             self._recent.popleft()
         return self._average(now_ns), self._calibrated(now_ns, estimate[:2])
@@ -132,17 +134,19 @@ class AffectEstimator:
         The deviations are those of a single face: the errors of neighbours are one person's,
         and do not average out.
         """
-        values = np.array([value for _, value in self._recent])  # (N, 4)
-        ages_ns = now_ns - np.array([stamp for stamp, _ in self._recent], dtype=np.float64)
-        weights = 1.0 / np.square(values[:, 2:])
-        weights /= weights.sum(axis=0)
-        mean = (weights * values[:, :2]).sum(axis=0) - self._neutral
-        spread = np.sqrt((weights * np.square(values[:, 2:])).sum(axis=0))
-        valence, arousal = np.clip(mean, -AFFECT_LIMIT, AFFECT_LIMIT).round(DECIMALS).tolist()
-        valence_sd, arousal_sd = spread.round(DECIMALS).tolist()
-        delay_ms = float(weights.mean(axis=1) @ ages_ns) / NS_PER_MS
+        stamps, valences, arousals, valence_sds, arousal_sds = zip(*self._recent, strict=True)
+        ages_ns = [now_ns - stamp for stamp in stamps]
+        valence, valence_sd, valence_age_ns = _weigh(valences, valence_sds, ages_ns)
+        arousal, arousal_sd, arousal_age_ns = _weigh(arousals, arousal_sds, ages_ns)
+        neutral_valence, neutral_arousal = self._neutral.tolist()
         return AffectSample(
-            now_ns, valence, arousal, valence_sd, arousal_sd, self._source, round(delay_ms, 1)
+            now_ns,
+            _rounded(valence - neutral_valence),
+            _rounded(arousal - neutral_arousal),
+            round(valence_sd, DECIMALS),
+            round(arousal_sd, DECIMALS),
+            self._source,
+            round((valence_age_ns + arousal_age_ns) / 2 / NS_PER_MS, 1),
         )
 
     def _calibrated(self, now_ns: int, estimate: Float64) -> Calibrated | None:
@@ -164,6 +168,25 @@ class AffectEstimator:
     def _state(self, faces: int, *, is_done: bool) -> Calibrated:
         valence, arousal = self._neutral.tolist()
         return Calibrated(valence, arousal, faces, is_done)
+
+
+def _weigh(
+    values: Sequence[float], deviations: Sequence[float], ages_ns: Sequence[int]
+) -> tuple[float, float, float]:
+    """Mean, deviation and age, weighted by the inverse variance.
+
+    Of so few numbers Python's own arithmetic is faster than array calls. The weighted mean of the
+    variances is their number over the sum of the weights.
+    """
+    weights = [1.0 / (deviation * deviation) for deviation in deviations]
+    total = sum(weights)
+    mean = sum(map(mul, weights, values)) / total
+    age_ns = sum(map(mul, weights, ages_ns)) / total
+    return mean, math.sqrt(len(weights) / total), age_ns
+
+
+def _rounded(level: float) -> float:
+    return round(min(max(level, -AFFECT_LIMIT), AFFECT_LIMIT), DECIMALS)
 
 
 _NOTHING: Float64 = np.zeros(4)

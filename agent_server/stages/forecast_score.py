@@ -2,7 +2,8 @@
 
 A forecast of two seconds is scored when those two seconds have been seen: the mean distance of
 the joints, beside that of a body which simply stands still (zero velocity), the least that a
-forecast must beat. What comes out is for those who look after a server; no decision sees it.
+forecast must beat. One forecast a second is; those in between look at nearly the same two seconds.
+What comes out is for those who look after a server; no decision sees it.
 """
 
 from collections import deque
@@ -15,6 +16,7 @@ from agent_server.domain.arrays import Float32
 from agent_server.domain.motion import (
     FRAME_NS,
     PREDICTED_FRAMES,
+    RATE_HZ,
     SEEN_FRAMES,
     Forecast,
     ForecastFigures,
@@ -24,7 +26,7 @@ from agent_server.domain.skeleton import CORE_JOINTS
 from agent_server.domain.stamp import NS_PER_S
 
 ROLLING_NS = 60 * NS_PER_S
-ENOUGH = 100
+ENOUGH = 20
 """Fewer scored forecasts than these, a third of a minute's, say nothing yet."""
 MARGIN = 1.1
 MARGIN_MM = 5.0
@@ -67,7 +69,8 @@ class ForecastScore:
             Whether the forecasts have begun to drift with it.
         """
         self._see(window)
-        if forecast.failure is None:
+        is_due = not self._open or self._frames - self._open[-1].end >= RATE_HZ
+        if is_due and forecast.failure is None:
             self._open.append(_Open(self._frames, forecast.positions, window.positions[-1]))
         while self._open and self._frames - self._open[0].end >= PREDICTED_FRAMES:
             self._score(self._open.popleft(), window.end_ns)

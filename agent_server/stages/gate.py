@@ -97,7 +97,7 @@ class AffectGate:
             return self._gaze_verdict(now_ns)
         if not self._faces:
             return self._without_face(mode, FacePairing.MISSING, None)
-        sample, is_open = min(self._faces, key=lambda face: abs(now_ns - face[0].originating_ns))
+        sample, is_open = self._nearest(now_ns)
         age_ms = (now_ns - sample.originating_ns) / NS_PER_MS
         # A face from the future is as little this moment's as one from the past.
         if abs(age_ms) > self._settings.max_age_ms:
@@ -118,6 +118,17 @@ class AffectGate:
             round(age_ms, 1),
             sample.source,
         )
+
+    def _nearest(self, now_ns: int) -> tuple[AffectSample, bool]:
+        """The face that was captured nearest to ``now_ns``; they are in order of capture."""
+        nearest = self._faces[-1]
+        least_ns = abs(now_ns - nearest[0].originating_ns)
+        for face in reversed(self._faces):
+            away_ns = abs(now_ns - face[0].originating_ns)
+            if away_ns > least_ns:
+                break
+            nearest, least_ns = face, away_ns
+        return nearest
 
     def _without_face(self, mode: str, pairing: FacePairing, age_ms: float | None) -> GateVerdict:
         if mode == "off":

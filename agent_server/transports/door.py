@@ -18,6 +18,9 @@ from agent_server.config import Settings
 
 log = logging.getLogger(__name__)
 
+READ_AHEAD = 8
+"""Messages of one client that may wait to be looked at before no more is read of it."""
+
 _FULL = (
     b"HTTP/1.1 429 Too Many Requests\r\ncontent-type: application/json\r\nconnection: close\r\n"
     b"content-length: %d\r\nretry-after: 15\r\n\r\n%s"
@@ -165,6 +168,15 @@ class _WebSocket(WebSocketsSansIOProtocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         super().connection_made(transport)
         self._address = _address(transport)
+
+    def send_receive_event_to_app(self) -> None:
+        """Stop reading when some messages wait; uvicorn stops at each, by two system calls."""
+        reads_on = not self.read_paused and self.queue.qsize() < READ_AHEAD
+        # What is paused already, uvicorn does not pause.
+        self.read_paused = self.read_paused or reads_on
+        super().send_receive_event_to_app()
+        if reads_on:
+            self.read_paused = False
 
     def connection_lost(self, exc: Exception | None) -> None:
         self.door.leave(self._address)

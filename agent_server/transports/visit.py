@@ -127,9 +127,10 @@ class Visit:
             if self._outbox.close_code is not None:
                 return
             await self._take(data)
-            # Others' turn, however much this client has sent.
             wait_ns = self._pace.wait_ns(self._hub.clock.now_ns())
-            await asyncio.sleep(wait_ns / NS_PER_S)
+            if wait_ns is not None:
+                # Others' turn, however much this client has sent.
+                await asyncio.sleep(wait_ns / NS_PER_S)
 
     async def _take(self, data: Wire) -> None:
         event = self._connection.receive(data, self._hub.clock.now_ns())
