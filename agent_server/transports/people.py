@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import msgspec
 from fastapi import APIRouter
@@ -14,7 +15,9 @@ from agent_server.errors import AgentServerError, InvalidInput
 from agent_server.protocol.convert import skeleton_to_message
 from agent_server.protocol.inputs import input_to_message
 from agent_server.recording.reader import Recording, open_recording
-from agent_server.synthetic.stand_in import stand_in
+
+if TYPE_CHECKING:
+    from agent_server.synthetic.stand_in import Clip
 
 SUFFIX = ".mcap"
 LONGEST_S = 120.0
@@ -34,7 +37,7 @@ def people_router(streams: Path) -> APIRouter:
     async def stand_in_clip(gesture: str, seed: int = 0, take: int = 0) -> Response:
         """What a made-up person does, for a page that plays without a sensor."""
         try:
-            clip = await asyncio.to_thread(stand_in, gesture, abs(seed), abs(take))
+            clip = await asyncio.to_thread(_stand_in, gesture, abs(seed), abs(take))
         except InvalidInput as error:
             return JSONResponse({"detail": str(error)}, 422)
         return _json(
@@ -65,6 +68,14 @@ def people_router(streams: Path) -> APIRouter:
         return StreamingResponse(_lines(recording), media_type="application/x-ndjson")
 
     return router
+
+
+def _stand_in(gesture: str, seed: int, take: int) -> "Clip":
+    """Make the clip, off the event loop."""
+    # A server starts sooner without the generator, which few of them need.
+    from agent_server.synthetic.stand_in import stand_in  # noqa: PLC0415
+
+    return stand_in(gesture, seed, take)
 
 
 def recordings_in(folder: Path) -> Mapping[str, Path]:
