@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.ready
 
-.PHONY: setup demo test verify-long lint bench bench-protocol recordings page soak audit clean
+.PHONY: setup demo test test-units test-whole verify-long lint bench bench-protocol recordings page soak audit clean
 
 setup: $(STAMP)
 
@@ -21,11 +21,18 @@ page: $(STAMP)
 demo: page
 	$(BIN)/agent-server demo
 
+# Two halves at once: what computes, and what waits for servers, browsers and clocks.
 test: page
 	$(BIN)/python -m coverage erase
-	$(BIN)/python -m coverage run -m pytest --durations 15
+	$(MAKE) --jobs 2 --output-sync=line test-units test-whole
 	$(BIN)/python -m coverage combine --quiet
 	$(BIN)/python -m coverage report --fail-under=90
+
+test-units: page
+	$(BIN)/python -m coverage run -m pytest --durations 10 tests/unit
+
+test-whole: page
+	$(BIN)/python -m coverage run -m pytest --durations 10 tests --ignore tests/unit
 
 verify-long: $(STAMP)
 	$(BIN)/python -m tests.bench.disconnects --language python --count 1000 --json

@@ -82,7 +82,9 @@ class Reactor(Model, Protocol):
         """How many numbers of noise it takes."""
         ...
 
-    def react(self, action: Float32, first: Float32, noise: Float32) -> Iterator[Float32]:
+    def react(
+        self, action: Float32, first: Float32, noise: Float32
+    ) -> Iterator[tuple[Float32, float]]:
         """Make a reaction until the action or the reaction is over.
 
         Args:
@@ -91,7 +93,9 @@ class Reactor(Model, Protocol):
             noise: Shape (latent,).
 
         Yields:
-            Poses of shape (15, 3), in the same frame.
+            Poses of shape (15, 3), in the same frame; with each, what the quality network holds
+            of the reaction up to it, in [0, 1]: above 0.5 it is rather a recorded one to such an
+            action than none.
 
         Raises:
             InferenceError: If the model fails or gives something that is not finite.

@@ -1,5 +1,6 @@
-"""The bundle of a generator of reactions: an encoder, and one step with cached keys and values."""
+"""The bundle of a generator of reactions: encoder, cached step, and who judges what they make."""
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from agent_server.inference.runtime import GOLDEN_TOLERANCE, OnnxModel, Session
 from agent_server.skeleton.pair import JOINT_NAMES
 
 ENCODER_FILE = "encoder.onnx"
+QUALITY_FILE = "quality.onnx"
 
 
 class OnnxReactor(OnnxModel[ReactionManifest]):
@@ -45,7 +47,9 @@ class OnnxReactor(OnnxModel[ReactionManifest]):
         """How many numbers of noise it takes."""
         return self.manifest.latent
 
-    def react(self, action: Float32, first: Float32, noise: Float32) -> Iterator[Float32]:
+    def react(
+        self, action: Float32, first: Float32, noise: Float32
+    ) -> Iterator[tuple[Float32, float]]:
         """Make a reaction pose by pose, until the action or the reaction is over.
 
         Args:
@@ -54,14 +58,16 @@ class OnnxReactor(OnnxModel[ReactionManifest]):
             noise: Shape (latent,).
 
         Yields:
-            Poses of shape (15, 3), in the same frame.
+            Poses of shape (15, 3), in the same frame; with each, what the quality network holds
+            of the reaction up to it, in [0, 1].
 
         Raises:
             InferenceError: If the model fails or gives something that is not finite.
         """
-        pose = first
-        for following, stop in self._steps(action, first, noise, len(action)):
-            yield pose
+        pose, quality = first, _Quality(self._quality)
+        steps = self._steps(action, first, noise, len(action))
+        for acting, (following, stop) in zip(action, steps, strict=True):
+            yield pose, quality.push(acting, pose)
             if stop > 0:
                 return
             pose = following
@@ -92,12 +98,15 @@ class OnnxReactor(OnnxModel[ReactionManifest]):
                 f"{len(JOINT_NAMES)} of kinect15: name another bundle"
             )
         self._encoder = Session(folder / ENCODER_FILE, self.name)
+        self._quality = Session(folder / QUALITY_FILE, self.name)
 
     def _replay_golden(self, path: Path) -> None:
         try:
             with np.load(path, allow_pickle=False) as golden:
-                names = ("action", "lengths", "given", "noise", "reaction")
-                action, lengths, given, noise, expected = (golden[name] for name in names)
+                names = ("action", "lengths", "given", "noise", "reaction", "quality")
+                action, lengths, given, noise, expected, qualities = (
+                    golden[name] for name in names
+                )
         except (OSError, KeyError, ValueError) as error:
             raise BundleError(f"{path} cannot be read: {error}") from error
         worst = 0.0
@@ -108,6 +117,9 @@ class OnnxReactor(OnnxModel[ReactionManifest]):
                 )
                 made = np.stack([given[row, 0], *(pose for pose, _ in steps)])
                 worst = max(worst, float(np.abs(made - expected[row]).max()))
+                quality = _Quality(self._quality)
+                held = [quality.push(*poses) for poses in zip(action[row], made, strict=True)]
+                worst = max(worst, float(np.abs(held - qualities[row]).max()))
         except InferenceError as error:
             raise BundleError(
                 f"{path}: the model does not run on its golden input: {error}"
@@ -117,3 +129,27 @@ class OnnxReactor(OnnxModel[ReactionManifest]):
                 f"{path}: the model does not give its golden output: "
                 "export it again, or use the onnxruntime it was made with"
             )
+
+
+class _Quality:
+    """What the quality network holds of one reaction: a mean over the frames so far.
+
+    Args:
+        network: It.
+    """
+
+    def __init__(self, network: Session) -> None:
+        self._network = network
+        self._first: Float32 | None = None
+        self._logits: list[float] = []
+
+    def push(self, acting: Float32, reacting: Float32) -> float:
+        """Look at the next pose (15, 3) of both; gives the quality so far, in [0, 1]."""
+        pair = np.concatenate([acting, reacting])[None]
+        if self._first is None:
+            self._first = self._before = pair
+            self._hidden = np.zeros(self._network.shapes[-1], np.float32)
+        logit, self._hidden = self._network.run(self._first, self._before, pair, self._hidden)
+        self._before = pair
+        self._logits.append(float(logit[0]))
+        return 1 / (1 + math.exp(-sum(self._logits) / len(self._logits)))

@@ -51,6 +51,7 @@ class Session:
         except Exception as error:  # onnxruntime has no common base of its errors
             raise BundleError(f"{path} cannot be loaded: {error}") from error
         self.inputs: list[str] = [given.name for given in self._session.get_inputs()]
+        self.shapes: list[list[int]] = [given.shape for given in self._session.get_inputs()]
         self.outputs: list[str] = [output.name for output in self._session.get_outputs()]
 
     def run(self, *given: NDArray[Any]) -> list[Float32]:

@@ -1,6 +1,9 @@
 """How fast a client is read."""
 
-from agent_server.domain.stamp import NS_PER_S
+from agent_server.domain.stamp import NS_PER_MS, NS_PER_S
+
+TURN_NS = 2 * NS_PER_MS
+"""Who sent something less than this ago lets others have their turn."""
 
 
 class Pace:
@@ -15,17 +18,17 @@ class Pace:
     def __init__(self, per_s: int) -> None:
         self._gap_ns = NS_PER_S // per_s
         self._due_ns = 0
+        self._last_ns = 0
 
     def wait_ns(self, now_ns: int) -> int | None:
         """Take note of a message; how long to wait before the next one is read.
 
         Returns:
-            None for who keeps the pace; 0 for who has sent some messages in a hurry, so that
-            others may have their turn.
+            None for a message after a pause; 0 for one of a burst, so that others may have
+            their turn.
         """
-        earliest_ns = now_ns - NS_PER_S
-        if self._due_ns <= earliest_ns:
-            self._due_ns = earliest_ns + self._gap_ns
-            return None
-        self._due_ns += self._gap_ns
-        return max(0, self._due_ns - now_ns)
+        is_first = now_ns - self._last_ns >= TURN_NS
+        self._last_ns = now_ns
+        self._due_ns = max(self._due_ns, now_ns - NS_PER_S) + self._gap_ns
+        wait_ns = max(0, self._due_ns - now_ns)
+        return None if is_first and not wait_ns else wait_ns

@@ -35,8 +35,10 @@ class Journals:
 
     def close(self, session: str) -> None:
         """A session is over. A slow disk may take its time to finish, and nobody else's."""
-        loop = asyncio.get_running_loop()
-        closing = loop.run_in_executor(self._closers, self._open.pop(session).close)
+        journal = self._open.pop(session)
+        if self._open_journal is None:
+            return  # there is nothing to finish, and a thread costs memory
+        closing = asyncio.get_running_loop().run_in_executor(self._closers, journal.close)
         self._closings.add(closing)
         closing.add_done_callback(self._closings.discard)
 

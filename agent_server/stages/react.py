@@ -29,6 +29,8 @@ from agent_server.skeleton.pair import (
 
 STRETCH_FRAMES = 5
 """Frames that are given at once: a fifth of a second."""
+LEAST_QUALITY = 0.5
+"""Of a reaction of less quality it is rather held that it is none."""
 UPPER_BONES = UPPER_BODY - 1
 NO_FRAMES = np.zeros((0, 15, 3), np.float32)
 
@@ -51,6 +53,7 @@ def react(reactor: Reactor, window: Window, forecast: Forecast, seed: str) -> It
     doubt = Doubt(given, reactor.rate_hz)
     waiting: list[Float32] = []
     sent, at = 0, SEEN_FRAMES - 1  # frames given, and the next of the 75 to be made
+    at_first = at * reactor.rate_hz // RATE_HZ
     refused, last = None, first
 
     def stretch(count: int, *, is_last: bool = False) -> Stretch:
@@ -63,8 +66,10 @@ def react(reactor: Reactor, window: Window, forecast: Forecast, seed: str) -> It
         return made
 
     try:
-        for index, pose in enumerate(poses):
-            refused = doubt.push(pose)
+        for index, (pose, quality) in enumerate(poses):
+            # Nothing is played of what comes before, on which quality has time to form.
+            is_judged = index >= at_first
+            refused = doubt.push(pose) or (_unfit(quality) if is_judged else None)
             if refused is not None:
                 break
             while (place := at * reactor.rate_hz / RATE_HZ) <= index:
@@ -78,6 +83,15 @@ def react(reactor: Reactor, window: Window, forecast: Forecast, seed: str) -> It
     if refused is None and not (sent or waiting):
         refused = "the reaction is over before it begins"
     yield stretch(len(waiting), is_last=True)
+
+
+def _unfit(quality: float) -> str | None:
+    if quality >= LEAST_QUALITY:
+        return None
+    return (
+        f"it does not go with what the person does: quality {quality:.2f}, "
+        f"{LEAST_QUALITY:g} is asked"
+    )
 
 
 def broken_off(reason: str) -> Stretch:

@@ -1,4 +1,4 @@
-"""From a training run to the bundle of a generator of reactions: an encoder and a cached step."""
+"""From a training run to the bundle of a generator of reactions, and of who judges them."""
 
 import tempfile
 from pathlib import Path
@@ -8,6 +8,7 @@ import numpy as np
 import torch
 from torch.export import Dim
 
+from agent_server.domain.arrays import Float32
 from agent_server.inference.manifest import (
     FORMAT_VERSION,
     GOLDEN_FILE,
@@ -15,10 +16,12 @@ from agent_server.inference.manifest import (
     DataSource,
     ReactionManifest,
 )
-from models.data.interactions import INTERACTION_SETS, JOINTS, LICENCE
-from models.evaluation.interaction import DRAWS, JUDGES, Court, stand_still
+from agent_server.inference.reactor import QUALITY_FILE
+from models.data.interactions import INTERACTION_SETS, JOINTS, LICENCE, Pairs
+from models.evaluation.interaction import DRAWS, JUDGES, Court, React, as_long, stand_still
 from models.evaluation.interaction_rows import reacting
 from models.evaluation.latency import reaction_latency
+from models.evaluation.reaction_quality import quality_report
 from models.export.bundle import RESEARCH_LICENCE
 from models.export.onnx import OPSET, require_close, write_graph
 from models.export.publish import publish, training_of
@@ -33,10 +36,13 @@ from models.interformer.generator.onnx_core import (
     OnnxCore,
 )
 from models.interformer.generator.train import load_generator
+from models.interformer.quality.network import Quality, QualityStep
+from models.interformer.quality.train import train_quality
 from models.training.run import read_info
 
 GOLDEN_ROWS = 4
 GOLDEN_FRAMES = 20
+QUALITY_SEED = 0
 
 
 def export_reaction(
@@ -74,9 +80,16 @@ def export_reaction(
             "onnx_difference_m": check_parity(network, core, golden),
         }
         reaction, _ = generate(core, *golden, GOLDEN_FRAMES, stops=False)
+        training = spec.read(data, "train")
+        judge = train_quality(spec, Pairs.of(training, spec.labels), QUALITY_SEED)
+        write_quality(judge, draft / QUALITY_FILE)
+        results["quality"] = measure_quality(
+            judge, court, reacting(core, config.latent, config.frames)
+        )
         names = ("action", "lengths", "given", "noise")
         arrays: dict[str, Any] = dict(zip(names, (part.numpy() for part in golden), strict=True))
-        np.savez_compressed(draft / GOLDEN_FILE, **arrays, reaction=reaction.numpy())
+        arrays |= {"reaction": reaction.numpy(), "quality": qualities(judge, golden[0], reaction)}
+        np.savez_compressed(draft / GOLDEN_FILE, **arrays)
         manifest = ReactionManifest(
             format_version=FORMAT_VERSION,
             name=folder.name,
@@ -90,11 +103,11 @@ def export_reaction(
             opset=OPSET,
             parameters=sum(p.numel() for p in network.parameters()),
             batch_exact=False,
-            files={ENCODER_FILE: ""},
+            files={ENCODER_FILE: "", QUALITY_FILE: ""},
             licence=RESEARCH_LICENCE,
             training=training_of(info, [DataSource(spec.name, LICENCE, synthetic=False)]),
             results=results,
-            range=training_range(spec.read(data, "train"), spec.rate_hz),
+            range=training_range(training, spec.rate_hz),
         )
         return publish(draft, folder, manifest, reaction_card(manifest))
 
@@ -144,6 +157,38 @@ def write_graphs(network: Generator, folder: Path) -> None:
             {2: batch, 4: action_frames},
         ),
     )
+
+
+def write_quality(network: Quality, path: Path) -> None:
+    """Export one step of the quality network."""
+    given = (torch.randn(1, 2 * JOINTS, 3) for _ in range(3))
+    write_graph(
+        QualityStep(network).eval(),
+        (*given, torch.zeros(1, network.width)),
+        path,
+        ("first", "before", "pair", "hidden"),
+        ("logit", "new_hidden"),
+        ({}, {}, {}, {}),
+    )
+
+
+@torch.no_grad()
+def qualities(network: Quality, action: torch.Tensor, reaction: torch.Tensor) -> Float32:
+    """What is held of reactions (B, T, 15, 3) up to each of their frames, (B, T)."""
+    logits = network(action, reaction)
+    so_far = logits.cumsum(1) / torch.arange(1, logits.shape[1] + 1)
+    held: Float32 = torch.sigmoid(so_far).numpy()
+    return held
+
+
+def measure_quality(network: Quality, court: Court, react: React) -> dict[str, Any]:
+    """The quality network on the test split: recorded reactions, this generator's, none."""
+    test = court.test
+    made = {
+        "generated": as_long(react(test, 0)[0], test),
+        "zero_velocity": stand_still(test, 0)[0],
+    }
+    return quality_report(network, test, made)
 
 
 def check_parity(network: Generator, core: OnnxCore, given: tuple[torch.Tensor, ...]) -> float:

@@ -13,10 +13,17 @@ ROWS = {
 }
 
 
+PASSES = {
+    "recorded": "of the recorded reactions",
+    "generated": "of those this model makes",
+    "zero_velocity": "of first poses that are held",
+}
+
+
 def reaction_card(manifest: ReactionManifest) -> str:
     """Markdown: what the model is, what was measured, how it was made."""
     results = manifest.results
-    latency = results["latency"]
+    latency, quality = results["latency"], results["quality"]
     lines = [
         head(manifest, "Makes the reaction of a person to the action of another one."),
         f"`encoder.onnx` reads an action of up to {manifest.frames} frames at "
@@ -44,6 +51,19 @@ def reaction_card(manifest: ReactionManifest) -> str:
         )
         + ".",
         "",
+        "## The quality network",
+        "`quality.onnx` sees both people frame by frame and says how probable it is so far that "
+        "the reaction is a recorded one to this action. It was trained on the training split "
+        "against counterfeits, judges what is generated, and taught the generator nothing.",
+        "",
+        "On the test split it holds for recorded, more probably than not: "
+        + ", ".join(f"{PASSES[name]} {percent(share)}" for name, share in quality["passes"].items())
+        + ".",
+        "A recorded reaction is held to be better than a counterfeit (area under the curve): "
+        + ", ".join(f"{name.replace('_', ' ')} {auc:.2f}" for name, auc in quality["auc"].items())
+        + ".",
+        "",
+        "## Also",
         f"- its own end is {results['reactions']['length_error_frames']} frames off",
         f"- one frame on one thread: p50 {latency['p50_ms']} ms, p95 {latency['p95_ms']} ms",
         f"- torch and ONNX differ by at most {results['onnx_difference_m']:.1e} m in "

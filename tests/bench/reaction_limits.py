@@ -1,14 +1,16 @@
-"""How many motions pass the limits that stand before a generated reaction is played.
+"""How many motions pass what stands before a generated reaction is played: limits, and quality.
 
 ``python -m tests.bench.reaction_limits --data DIR --set sbu k3hi --json``, with the research
 bundles of ``models/benchmarks`` and the train extra: the real reactions of the test split, the same
-with their frames shuffled, reactions generated for its actions, and reactions to the gestures of
-``recorded_streams`` (synthetic people), once with the noise of their commands and in further draws.
+with their frames shuffled and reactions generated for its actions, by the limits alone; and
+reactions to the gestures of ``recorded_streams`` (synthetic people), by the limits and the quality
+network, once with the noise of their commands and in further draws.
 The limits were widened with these figures in sight; they tell what passes, not what is good.
 """
 
 import argparse
 import json
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -37,8 +39,9 @@ def of_test_split(reactor, data, name):
     pairs = [facing(one) for one in interaction_set(name).read(data, "test")]
     motions = [(action.numpy(), reaction.numpy()) for action, reaction in pairs]
     made = (
-        reactor.react(action[: reactor.frames], reaction[0], noise_of(str(at), reactor.latent))
+        [pose for pose, _ in reactor.react(action[: reactor.frames], reaction[0], noise)]
         for at, (action, reaction) in enumerate(motions)
+        for noise in [noise_of(str(at), reactor.latent)]
     )
     return {
         "of": len(motions),
@@ -65,21 +68,26 @@ def answered():
 
 def of_recorded_streams(reactor, gestures, draws):
     """Counts of the answered gestures, with the command's noise and with others."""
-
-    def is_played(window, forecast, seed):
-        *_, last = react(reactor, window, forecast, seed)
-        return last.refused is None
-
+    seeds = [(*seen, f"{command} {draw}") for *seen, command in gestures for draw in range(draws)]
     return {
-        "of": len(gestures),
-        "with_the_commands_noise": sum(is_played(*one) for one in gestures),
-        "draws": draws,
-        "in_all_draws": sum(
-            is_played(window, forecast, f"{command} {draw}")
-            for window, forecast, command in gestures
-            for draw in range(draws)
-        ),
+        "with_the_commands_noise": played(reactor, gestures),
+        "in_other_draws": played(reactor, seeds),
     }
+
+
+def played(reactor, asked):
+    """What becomes of reactions: played to their end, or refused, and why and when."""
+    counts = Counter()
+    for window, forecast, seed in asked:
+        *_, last = react(reactor, window, forecast, seed)
+        counts["of"] += 1
+        if last.refused is None:
+            counts["played"] += 1
+            continue
+        by = "quality" if "quality" in last.refused else "limits"
+        counts[f"refused_by_{by}"] += 1
+        counts["refused_before_it_began"] += last.first_frame + len(last.positions) == 0
+    return counts
 
 
 def main():

@@ -155,6 +155,10 @@ async def soak(minutes, sessions, seed):
         "warm_mb": round(warm_mb, 1),
         "end_mb": round(end_mb, 1),
         "growth": round(end_mb / warm_mb - 1, 4),
+        "by_tenths_mb": [
+            round(statistics.median(look["rss_mb"] for look in looks[at : at + tenth]), 1)
+            for at in range(0, len(looks) - tenth + 1, tenth)
+        ],
         "left_tasks": int(after["tasks"] - before["tasks"]),
         "left_files": int(after["files"] - before["files"]),
         "left_sessions": int(after["sessions"]),

@@ -129,6 +129,6 @@ async def test_monitors_are_told_how_good_forecasts_were():
         heard = await run_session(server, stream(6), 3.0)
     scores = [one.forecast_score for one in heard if isinstance(one, m.StatsMessage)]
     assert scores[0] is None
-    assert scores[-1].forecasts >= 5
+    assert scores[-1].forecasts >= 2
     # The fake predictor holds the last frame, which is what zero velocity means.
     assert scores[-1].error_mm == pytest.approx(scores[-1].zero_velocity_mm, abs=0.2)

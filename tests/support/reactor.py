@@ -29,7 +29,8 @@ class HandReactor:
 
     ``ends_at`` and ``breaks_at`` say after how many poses it is over or fails, ``waits`` is called
     before each pose, ``known`` are the limits that it claims, ``grows`` is the share by which the
-    forearm becomes longer in a second; ``action`` is what it was given.
+    forearm becomes longer in a second, ``quality`` is what it holds of each pose's reaction;
+    ``action`` is what it was given.
     """
 
     name = "hand_reactor"
@@ -39,13 +40,21 @@ class HandReactor:
     latent = 4
 
     def __init__(
-        self, *, speed=0.1, ends_at=1000, breaks_at=1000, waits=None, known=RANGE, grows=0.0
+        self,
+        *,
+        speed=0.1,
+        ends_at=1000,
+        breaks_at=1000,
+        waits=None,
+        known=RANGE,
+        grows=0.0,
+        quality=lambda index: 0.9,
     ):
         self.range = known
         self.action = None
         self.made = 0
         self._speed, self._ends_at, self._breaks_at = speed, ends_at, breaks_at
-        self._waits, self._grows = waits, grows
+        self._waits, self._grows, self._quality = waits, grows, quality
 
     def react(self, action, first, noise):
         self.action = action
@@ -62,4 +71,4 @@ class HandReactor:
             length *= 1 + self._grows * index / self.rate_hz
             turned = length * np.array([np.sin(angle), np.cos(angle)])
             pose[RIGHT_HAND, :2] = first[RIGHT_ELBOW, :2] - turned
-            yield pose + 0 * np.float32(noise.sum())
+            yield pose + 0 * np.float32(noise.sum()), self._quality(index)

@@ -25,12 +25,14 @@ def test_a_bundle_meets_its_golden_output_and_reacts(name):
         np.array(pose, np.float32) for pose in (reactor.range.action, reactor.range.reaction)
     )
     still = np.repeat(action[None], 30, axis=0)
-    poses = list(reactor.react(still, first, noise_of("s/c1", reactor.latent)))
+    made = list(reactor.react(still, first, noise_of("s/c1", reactor.latent)))
+    poses = [pose for pose, _ in made]
+    assert all(0 <= quality <= 1 for _, quality in made)
     assert 1 < len(poses) <= 30
     np.testing.assert_array_equal(poses[0], first)
     assert all(pose.shape == (15, 3) and np.isfinite(pose).all() for pose in poses)
     again = list(reactor.react(still, first, noise_of("s/c1", reactor.latent)))
-    np.testing.assert_array_equal(poses, again)
+    np.testing.assert_array_equal(poses, [pose for pose, _ in again])
 
 
 def test_another_golden_output_or_another_kind_of_bundle_is_refused(tmp_path):
@@ -38,12 +40,14 @@ def test_another_golden_output_or_another_kind_of_bundle_is_refused(tmp_path):
     shutil.copytree(BENCHMARKS / NAMES[0], folder)
     with np.load(folder / "golden.npz") as golden:
         arrays = dict(golden)
-    arrays["reaction"][2, 9, 8, 1] += 0.01
-    np.savez_compressed(folder / "golden.npz", **arrays)
     manifest = OnnxReactor(BENCHMARKS / NAMES[0]).manifest
-    write_manifest(folder, manifest)
-    with pytest.raises(BundleError, match="does not give its golden output"):
-        OnnxReactor(folder)
+    for name, place in (("reaction", (2, 9, 8, 1)), ("quality", (1, 7))):
+        wrong = arrays | {name: arrays[name].copy()}
+        wrong[name][place] += 0.01
+        np.savez_compressed(folder / "golden.npz", **wrong)
+        write_manifest(folder, manifest)
+        with pytest.raises(BundleError, match="does not give its golden output"):
+            OnnxReactor(folder)
     with pytest.raises(BundleError, match="can predict, one that can react is needed"):
         OnnxReactor(assets.bundles() / PREDICTOR)
 

@@ -1,6 +1,7 @@
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -14,18 +15,21 @@ from agent_server.inference.manifest import (  # noqa: E402
     ReactionManifest,
     read_manifest,
 )
+from agent_server.inference.reactor import OnnxReactor  # noqa: E402
 from models.data.bvh import read_bvh  # noqa: E402
 from models.data.interactions import SBU, SBU_NAMES, Pairs  # noqa: E402
 from models.evaluation import interaction  # noqa: E402
 from models.evaluation.interaction import Court, position_error_mm, stand_still  # noqa: E402
 from models.evaluation.interaction_rows import reacting  # noqa: E402
 from models.evaluation.recurrent import JudgeConfig  # noqa: E402
+from models.export import reaction  # noqa: E402
 from models.export.interaction import write_interaction  # noqa: E402
 from models.export.reaction import export_reaction, golden_input  # noqa: E402
 from models.interformer.generator.config import NetworkConfig, TrainConfig  # noqa: E402
 from models.interformer.generator.generate import TorchCore, generate  # noqa: E402
 from models.interformer.generator.onnx_core import ENCODER_FILE, OnnxCore  # noqa: E402
 from models.interformer.generator.train import load_generator, train  # noqa: E402
+from models.interformer.quality.train import train_quality  # noqa: E402
 from models.training.run import Run  # noqa: E402
 from tests.support.interactions import interactions, write_sbu  # noqa: E402
 
@@ -46,6 +50,7 @@ def quick_judges() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(interaction, "JudgeConfig", lambda: QUICK)
         patch.setattr(interaction, "JUDGES", 1)
+        patch.setattr(reaction, "train_quality", partial(train_quality, steps=20))
         yield
 
 
@@ -119,6 +124,10 @@ def test_a_run_becomes_a_bundle_that_is_whole(bundle: Path, tmp_path: Path) -> N
         given = [torch.from_numpy(golden[name]) for name in ("action", "lengths", "given", "noise")]
         found, _ = generate(core, *given, golden["reaction"].shape[1], stops=False)
         np.testing.assert_allclose(found.numpy(), golden["reaction"], atol=1e-4)
+    reactor = OnnxReactor(folder)  # which checks the golden output of every network
+    assert reactor.manifest.results["quality"]["passes"].keys() == {
+        *("recorded", "generated", "zero_velocity")
+    }
     with (folder / ENCODER_FILE).open("ab") as file:
         file.write(b"x")
     with pytest.raises(BundleError, match=r"encoder\.onnx was altered"):

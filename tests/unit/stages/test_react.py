@@ -114,6 +114,18 @@ def test_what_leaves_the_training_range_is_not_played_on(limits, reason):
     assert len(frames(stretches)) < 50
 
 
+def test_what_the_quality_network_holds_for_no_reaction_is_not_played_on():
+    (only,) = made(HandReactor(quality=lambda index: 0.3))
+    assert only.is_last
+    assert only.refused == ("it does not go with what the person does: quality 0.30, 0.5 is asked")
+    assert only.positions.shape == (0, 15, 3)
+    *_, last = made(HandReactor(quality=lambda index: 0.9 if index < 30 else 0.4))
+    assert "quality 0.40" in last.refused
+    assert 20 < last.first_frame + len(last.positions) < 30
+    # On the second that is not played, the network has not seen enough yet.
+    assert made(HandReactor(quality=lambda index: 0.1 * min(index, 9)))[-1].refused is None
+
+
 def test_a_model_that_breaks_keeps_what_it_has_made():
     *good, last = made(HandReactor(breaks_at=25))
     assert last.refused == "the hand is broken"
