@@ -55,8 +55,8 @@ class Interaction:
 
     Attributes:
         name: Where it comes from, ``s02s06/01/001`` or ``kicking/12``.
-        group: What is held out together: the pair of people, or the recording where people are
-            not told.
+        group: Of SBU the pair of people, who are held out together; K3HI does not tell people,
+            and names the folder of the label.
         label: What they do.
         action: Shape (T, 15, 3), metres, the person who is looked at.
         reaction: Shape (T, 15, 3), metres, the other one.
