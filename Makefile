@@ -21,15 +21,16 @@ page: $(STAMP)
 demo: page
 	$(BIN)/agent-server demo
 
-# Two halves at once: what computes, and what waits for servers, browsers and clocks.
-test: page
+# Two halves at once: what computes, shown when it is done, and what waits for servers and browsers.
+test: $(STAMP)
 	$(BIN)/python -m coverage erase
-	$(MAKE) --jobs 2 --output-sync=line test-units test-whole
+	$(MAKE) --jobs 2 test-units test-whole
 	$(BIN)/python -m coverage combine --quiet
 	$(BIN)/python -m coverage report --fail-under=90
 
+test-units: UNITS := $(VENV)/units.log
 test-units: page
-	$(BIN)/python -m coverage run -m pytest --durations 10 tests/unit
+	@$(BIN)/python -m coverage run -m pytest --durations 10 tests/unit > $(UNITS) 2>&1; status=$$?; cat $(UNITS); exit $$status
 
 test-whole: page
 	$(BIN)/python -m coverage run -m pytest --durations 10 tests --ignore tests/unit

@@ -29,6 +29,8 @@ from agent_server.skeleton.pair import (
 
 STRETCH_FRAMES = 5
 """Frames that are given at once: a fifth of a second."""
+DRAWS = 3
+"""So often noise is drawn for one reaction; each draw that comes to nothing takes some 50 ms."""
 LEAST_QUALITY = 0.5
 """Of a reaction of less quality it is rather held that it is none."""
 UPPER_BONES = UPPER_BODY - 1
@@ -38,17 +40,32 @@ NO_FRAMES = np.zeros((0, 15, 3), np.float32)
 def react(reactor: Reactor, window: Window, forecast: Forecast, seed: str) -> Iterator[Stretch]:
     """Make a reaction, stretch by stretch; the last one says so.
 
+    Where a draw of noise comes to nothing before its first stretch, the next one is tried.
+
     Args:
         reactor: Makes it.
         window: What was seen.
         forecast: What is expected.
         seed: The same text gives the same noise.
     """
+    person = np.concatenate([window.positions, forecast.positions])
+    action = as_action(person, np.array(reactor.range.action, np.float32))
+    action = _resampled(action, reactor.rate_hz)[: reactor.frames]
+    for draw in range(DRAWS):
+        noise = noise_of(f"{seed} {draw}" if draw else seed, reactor.latent)
+        stretches = _stretches(reactor, action, noise)
+        beginning = next(stretches)
+        if beginning.refused is None:
+            break
+    yield beginning
+    yield from stretches
+
+
+def _stretches(reactor: Reactor, action: Float32, noise: Float32) -> Iterator[Stretch]:
+    """One draw, from the end of the window on."""
     given = reactor.range
     first = np.array(given.reaction, np.float32)
-    person = np.concatenate([window.positions, forecast.positions])
-    action = _resampled(as_action(person, np.array(given.action, np.float32)), reactor.rate_hz)
-    poses = reactor.react(action[: reactor.frames], first, noise_of(seed, reactor.latent))
+    poses = reactor.react(action, first, noise)
     lengths = np.linalg.norm(bone_vectors(first), axis=-1)
     doubt = Doubt(given, reactor.rate_hz)
     waiting: list[Float32] = []

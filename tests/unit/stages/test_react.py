@@ -126,6 +126,24 @@ def test_what_the_quality_network_holds_for_no_reaction_is_not_played_on():
     assert made(HandReactor(quality=lambda index: 0.1 * min(index, 9)))[-1].refused is None
 
 
+def test_where_a_draw_comes_to_nothing_the_next_one_is_tried():
+    tried = []
+
+    def quality(index):
+        tried.append(index)
+        return 0.9 if tried.count(0) == 3 else 0.2
+
+    stretches = made(HandReactor(quality=quality))
+    assert stretches[-1].refused is None
+    assert len(frames(stretches)) == 50
+    assert tried.count(0) == 3
+    tried.clear()
+    # What has begun to play is not made anew.
+    *_, last = made(HandReactor(quality=lambda index: tried.append(index) or 0.9 - index / 60))
+    assert last.refused.startswith("it does not go")
+    assert tried.count(0) == 1
+
+
 def test_a_model_that_breaks_keeps_what_it_has_made():
     *good, last = made(HandReactor(breaks_at=25))
     assert last.refused == "the hand is broken"
