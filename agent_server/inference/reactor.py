@@ -141,7 +141,7 @@ class _Quality:
     def __init__(self, network: Session) -> None:
         self._network = network
         self._first: Float32 | None = None
-        self._logits: list[float] = []
+        self._sum, self._frames = 0.0, 0
 
     def push(self, acting: Float32, reacting: Float32) -> float:
         """Look at the next pose (15, 3) of both; gives the quality so far, in [0, 1]."""
@@ -151,5 +151,6 @@ class _Quality:
             self._hidden = np.zeros(self._network.shapes[-1], np.float32)
         logit, self._hidden = self._network.run(self._first, self._before, pair, self._hidden)
         self._before = pair
-        self._logits.append(float(logit[0]))
-        return 1 / (1 + math.exp(-sum(self._logits) / len(self._logits)))
+        self._sum += float(logit[0])
+        self._frames += 1
+        return 1 / (1 + math.exp(-self._sum / self._frames))

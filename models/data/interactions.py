@@ -339,6 +339,23 @@ def _padded(motion: torch.Tensor, frames: int) -> torch.Tensor:
     return torch.cat([motion, motion[-1:].expand(frames - len(motion), -1, -1)])
 
 
+def held(motion: torch.Tensor, frames: int) -> torch.Tensor:
+    """Motions (B, T, J, 3) as long as asked: cut, or with the last pose repeated."""
+    missing = max(frames - motion.shape[1], 0)
+    return torch.cat([motion, motion[:, -1:].expand(-1, missing, -1, -1)], dim=1)[:, :frames]
+
+
+def at_places(motion: torch.Tensor, places: torch.Tensor) -> torch.Tensor:
+    """Motions (B, T, J, 3) at places (B, N) between their frames, held at both ends."""
+    last = motion.shape[1] - 1
+    places = places.clamp(0, last)
+    before = places.long()
+    after = (before + 1).clamp(max=last)
+    share = (places - before)[..., None, None]
+    rows = torch.arange(len(motion))[:, None]
+    return motion[rows, before].lerp(motion[rows, after], share)
+
+
 def vary(
     pairs: Pairs, generator: torch.Generator, scale: float = 0.1, swap: torch.Tensor | None = None
 ) -> Pairs:

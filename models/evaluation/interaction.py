@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from models.data.interactions import Interaction, InteractionSet, Pairs
+from models.data.interactions import Interaction, InteractionSet, Pairs, held
 from models.evaluation.motion_sets import diversity_score, frechet_distance
 from models.evaluation.recurrent import JudgeConfig, RecurrentClassifier, judged, train_judge
 
@@ -133,9 +133,7 @@ def position_error_mm(made: Pairs, true: Pairs) -> float:
 
 def as_long(reaction: torch.Tensor, true: Pairs) -> torch.Tensor:
     """Reactions (B, T, 15, 3) with as many frames as the true ones, by repeating the last pose."""
-    frames = true.reaction.shape[1]
-    missing = max(frames - reaction.shape[1], 0)
-    return torch.cat([reaction, reaction[:, -1:].expand(-1, missing, -1, -1)], dim=1)[:, :frames]
+    return held(reaction, true.reaction.shape[1])
 
 
 def judge_of(

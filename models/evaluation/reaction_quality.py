@@ -5,11 +5,11 @@ from typing import Any
 
 import torch
 
+from agent_server.stages.react import LEAST_QUALITY
 from models.data.interactions import Pairs
 from models.interformer.quality.counterfeits import COUNTERFEITS, NEEDS_MOTION, moves
 from models.interformer.quality.network import Quality
 
-LEAST_QUALITY = 0.5
 DRAWS = 3
 
 

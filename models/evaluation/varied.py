@@ -2,7 +2,7 @@
 
 import torch
 
-from models.data.interactions import TORSO
+from models.data.interactions import TORSO, at_places
 from models.data.layouts import KINECT15
 
 LEAST_FRAMES = 8
@@ -54,9 +54,4 @@ def vary_pace(
     at = torch.arange(frames) / (new[:, None] - 1)
     share = at.clamp(max=1.0)
     share = share + (bend[:, None] - 1) * share * (1 - share)
-    place = share * (lengths[:, None] - 1)
-    before = place.long()
-    after = (before + 1).clamp(max=frames - 1)
-    part = (place - before)[..., None, None]
-    rows = torch.arange(count)[:, None]
-    return motion[rows, before].lerp(motion[rows, after], part), new
+    return at_places(motion, share * (lengths[:, None] - 1)), new

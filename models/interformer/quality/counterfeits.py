@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import torch
 
-from models.data.interactions import Pairs
+from models.data.interactions import Pairs, at_places, held
 
 MOVES_M = 0.25
 """A reaction in which no joint gets this far from where it began may as well stand still."""
@@ -21,9 +21,7 @@ def of_another(pairs: Pairs, others: Pairs, generator: torch.Generator) -> torch
     frames = pairs.reaction.shape[1]
     differs = (others.labels != pairs.labels[:, None]).float()
     borrowed = others.reaction[torch.multinomial(differs, 1, generator=generator)[:, 0]]
-    missing = max(frames - borrowed.shape[1], 0)
-    borrowed = torch.cat([borrowed, borrowed[:, -1:].expand(-1, missing, -1, -1)], dim=1)
-    way = borrowed[:, :frames] - borrowed[:, :1]
+    way = held(borrowed, frames) - borrowed[:, :1]
     return pairs.reaction[:, :1] + way
 
 
@@ -47,7 +45,7 @@ def at_another_pace(pairs: Pairs, others: Pairs, generator: torch.Generator) -> 
     share = torch.rand(size, 1, generator=generator)
     fast, slow = (low + (high - low) * share for low, high in (FAST, SLOW))
     is_fast = torch.rand(size, 1, generator=generator) < 0.5
-    return _at(pairs.reaction, torch.arange(frames) * torch.where(is_fast, fast, slow))
+    return at_places(pairs.reaction, torch.arange(frames) * torch.where(is_fast, fast, slow))
 
 
 def trembling(pairs: Pairs, others: Pairs, generator: torch.Generator) -> torch.Tensor:
@@ -60,7 +58,7 @@ def trembling(pairs: Pairs, others: Pairs, generator: torch.Generator) -> torch.
 def backwards(pairs: Pairs, others: Pairs, generator: torch.Generator) -> torch.Tensor:
     """From its end to its beginning."""
     frames = torch.arange(pairs.reaction.shape[1])
-    return _at(pairs.reaction, (pairs.lengths[:, None] - 1 - frames).float())
+    return at_places(pairs.reaction, (pairs.lengths[:, None] - 1 - frames).float())
 
 
 COUNTERFEITS: dict[str, Counterfeit] = {
@@ -79,15 +77,3 @@ def moves(pairs: Pairs) -> torch.Tensor:
     """Whose reaction moves, (B,)."""
     away: torch.Tensor = (pairs.reaction - pairs.reaction[:, :1]).norm(dim=-1)
     return away.amax((1, 2)) > MOVES_M
-
-
-def _at(motion: torch.Tensor, places: torch.Tensor) -> torch.Tensor:
-    """Motion (B, T, J, 3) at places (B, T) between its frames, held at both ends."""
-    last = motion.shape[1] - 1
-    places = places.clamp(0, last)
-    before = places.long().clamp(max=max(last - 1, 0))
-    share = (places - before)[..., None, None]
-    rows = torch.arange(len(motion))[:, None]
-    following = (before + 1).clamp(max=last)
-    between: torch.Tensor = motion[rows, before].lerp(motion[rows, following], share)
-    return between

@@ -31,9 +31,8 @@ def test_a_counterfeit_is_another_motion_of_the_same_form(name: str, pairs: Pair
 
 
 def test_what_is_borrowed_belongs_to_another_kind_of_action(pairs: Pairs) -> None:
-    marked = pairs.reaction + pairs.labels[:, None, None, None]
     # Each reaction drifts by its label, so that a borrowed one tells whose it is.
-    drift = torch.linspace(0, 1, marked.shape[1])[:, None, None]
+    drift = torch.linspace(0, 1, pairs.reaction.shape[1])[:, None, None]
     marked = pairs.reaction[:, :1] + drift * pairs.labels[:, None, None, None]
     those = pairs.with_reactions(marked, pairs.lengths)
     made = COUNTERFEITS["of_another"](those, those, chance())
