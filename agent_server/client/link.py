@@ -31,6 +31,7 @@ from agent_server.protocol.codes import (
     Retry,
 )
 from agent_server.protocol.connection import HEARTBEAT, SILENT_HEARTBEATS
+from agent_server.protocol.convert import unpack_pose_stream
 from agent_server.protocol.inputs import packed
 
 log = logging.getLogger(__name__)
@@ -313,7 +314,10 @@ class Link:
     def _decode(self, data: str | bytes) -> m.Message | None:
         """A message, or None for one that only a newer version knows."""
         try:
-            return self._codec.decode_server(data)
+            message = self._codec.decode_server(data)
+            if isinstance(message, m.PackedPoseStreamMessage):
+                message = unpack_pose_stream(message)
+            return message
         except InvalidInput as error:
             if error.code == "unknown_type":
                 return None

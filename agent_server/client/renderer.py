@@ -27,7 +27,9 @@ class Cancelled:
     reason: str
 
 
-Event = m.CommandMessage | Cancelled | m.SceneState | m.Welcome | m.ErrorMessage
+Event = (
+    m.CommandMessage | Cancelled | m.PoseStreamMessage | m.SceneState | m.Welcome | m.ErrorMessage
+)
 
 
 class Renderer(Listening[Event]):
@@ -37,11 +39,13 @@ class Renderer(Listening[Event]):
         options: Server, session, and what the client is.
         objects: Gives the state of each object as it is shown, to be reconciled; None shows none.
         mirror: Only watch: commands come, and nothing is answered.
-        capabilities: What it can do beside resuming and reporting steps.
+        capabilities: What it can do beside resuming and reporting steps; with ``pose_stream``
+            generated motion comes too.
         clock: Where to read the time.
         random: Where waiting times come from.
 
-    Iterating it gives what comes: welcomes, orders, cancellations, the room and errors, in order.
+    Iterating it gives what comes: welcomes, orders, stretches of the motion of the one under way,
+    cancellations, the room and errors, in order.
     """
 
     def __init__(
@@ -134,6 +138,10 @@ class Renderer(Listening[Event]):
                     self._events.put_nowait(Cancelled(taken.cancelled, PREEMPTED))
                 if taken.order is not None:
                     self._events.put_nowait(taken.order)
+            case m.PoseStreamMessage(command_id=command_id):
+                running = self._ledger.running
+                if self._mirror or (running is not None and running.id == command_id):
+                    self._events.put_nowait(message)
             case m.SceneState() | m.ErrorMessage():
                 self._events.put_nowait(message)
 

@@ -225,6 +225,34 @@ def pack_pose_stream(message: m.PoseStreamMessage) -> m.PackedPoseStreamMessage:
     )
 
 
+def unpack_pose_stream(message: m.PackedPoseStreamMessage) -> m.PoseStreamMessage:
+    """A MessagePack-coded stretch as a JSON-coded one.
+
+    Raises:
+        InvalidInput: If the bytes are no whole number of frames.
+    """
+    frame_bytes = 12 * len(message.joints)
+    size = len(message.positions)
+    if frame_bytes == 0 or size % frame_bytes:
+        raise InvalidInput(
+            f"positions has {size} bytes: with {len(message.joints)} joints a frame has "
+            f"{frame_bytes}, three float32 each",
+            field="positions",
+            code="wrong_point_count",
+        )
+    flat = np.frombuffer(message.positions, "<f4").astype(np.float64).round(JOINT_DECIMALS)
+    frames = flat.reshape(-1, len(message.joints), 3).tolist()
+    return m.PoseStreamMessage(
+        message.command_id,
+        message.first_frame,
+        message.rate_hz,
+        message.joints,
+        [[(x, y, z) for x, y, z in frame] for frame in frames],
+        message.is_last,
+        message.fallback,
+    )
+
+
 def decision_body(decision: Decision) -> m.DecisionBody:
     """A decision as a log holds it."""
     quality, gate, scene = decision.quality, decision.gate, decision.scene

@@ -38,6 +38,7 @@ SCENE_EVENT = Topic("/scene_event", "agent_server.SceneEvent", m.SceneEvent)
 SCENE = Topic("/scene", "agent_server.SceneState", m.SceneState)
 DECISION = Topic("/decision", "agent_server.Decision", m.DecisionMessage)
 COMMAND = Topic("/command", "agent_server.Command", m.CommandMessage)
+MOTION = Topic("/motion", "agent_server.PoseStream", m.PoseStreamMessage)
 LABEL = Topic("/label", "agent_server.Label", LabelRecord)
 TIMES = Topic("/times", "agent_server.InputTimes", InputTimes)
 CORE = Topic("/core", "agent_server.Core", CoreEntry)
@@ -47,6 +48,6 @@ RAW_INPUTS: tuple[Topic, ...] = (SKELETON, FACE, AFFECT, GAZE, CALIBRATION, ACK,
 
 TOPICS: dict[str, Topic] = {
     topic.name: topic
-    for topic in (*RAW_INPUTS, IMAGE, SCENE, DECISION, COMMAND, LABEL, TIMES, CORE)
+    for topic in (*RAW_INPUTS, IMAGE, SCENE, DECISION, COMMAND, MOTION, LABEL, TIMES, CORE)
 }
 """Every topic by its name."""

@@ -24,12 +24,13 @@ from agent_server.recording.schema import json_schema
 from agent_server.recording.sink import LIVE, ChunkLimits, McapSink
 from agent_server.recording.topics import Topic
 
-Output = m.DecisionMessage | m.CommandMessage | m.SceneState
+Output = m.DecisionMessage | m.CommandMessage | m.PoseStreamMessage | m.SceneState
 """What a session gives, beside telemetry that can be made anew."""
 
 _OUTPUTS: dict[type[Output], Topic] = {
     m.DecisionMessage: topics.DECISION,
     m.CommandMessage: topics.COMMAND,
+    m.PoseStreamMessage: topics.MOTION,
     m.SceneState: topics.SCENE,
 }
 

@@ -26,7 +26,7 @@ class Journal(Protocol):
         ...
 
     def append_output(self, message: Output, stamp_ns: int) -> None:
-        """A decision was made, a command issued, or the room has changed."""
+        """A decision was made, a command issued, its motion sent, or the room has changed."""
         ...
 
     def take_failure(self) -> str | None:

@@ -73,7 +73,9 @@ class Reactions:
     def _send(self, command_id: str, stretch: Stretch) -> bool:
         """Hand on a stretch; tells whether it was the last one."""
         context = self._context
-        context.audience.move(convert.pose_stream_message(command_id, stretch))
+        message = convert.pose_stream_message(command_id, stretch)
+        context.audience.move(message)
+        context.journal.append_output(message, context.now())
         if stretch.refused is not None:
             context.counters["reactions_refused"] += 1
             said = f"the generated motion of {command_id} is not played on: {stretch.refused}"

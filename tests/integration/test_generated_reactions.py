@@ -6,12 +6,16 @@ from dataclasses import replace
 from functools import partial
 
 import msgspec
+import numpy as np
+import pytest
 
+from agent_server.client import Options, Renderer
 from agent_server.client.once import send_paced
 from agent_server.clock import SystemClock
 from agent_server.config import GateSettings, Settings
 from agent_server.domain.command import Motion
 from agent_server.protocol import messages as m
+from agent_server.protocol.codec import CODECS
 from agent_server.recording.reader import open_recording
 from agent_server.scene.rules import default_rules
 from agent_server.service.core import Core
@@ -36,6 +40,11 @@ async def streams(client, into):
     async for message in client:
         if isinstance(message, m.PoseStreamMessage | m.PackedPoseStreamMessage | m.CommandMessage):
             into.append(message)
+
+
+async def listen(renderer, into):
+    async for event in renderer:
+        into.append(event)
 
 
 async def send_ears(sensor, seconds=2.5):
@@ -68,6 +77,33 @@ async def test_a_motion_follows_its_command_to_those_who_play_it():
     assert len(stretches[0].positions[0]) == len(stretches[0].joints) == 15
     assert sum(len(stretch.positions) for stretch in mirrored[1:]) == 50 * 15 * 12
     assert [type(message) for message in plain] == [m.CommandMessage]
+
+
+@pytest.mark.parametrize("subprotocol", CODECS)
+async def test_the_python_client_hands_on_the_motion_of_the_command_under_way(subprotocol):
+    events = []
+    async with (
+        live(reacting(HandReactor()), SETTINGS, alter_rule=generated) as server,
+        Renderer(
+            Options(server.url, "s", subprotocol=subprotocol), capabilities=("pose_stream",)
+        ) as renderer,
+        server.join("sensor") as sensor,
+        asyncio.TaskGroup() as group,
+    ):
+        listening = group.create_task(listen(renderer, events))
+        await send_ears(sensor)
+        await asyncio.sleep(0.3)
+        listening.cancel()
+    at = next(i for i, one in enumerate(events) if isinstance(one, m.CommandMessage))
+    stretches = [one for one in events[at:] if isinstance(one, m.PoseStreamMessage)]
+    assert len([one for one in events if isinstance(one, m.PoseStreamMessage)]) == len(stretches)
+    assert {one.command_id for one in stretches} == {events[at].id}
+    assert sum(len(one.positions) for one in stretches) == 50
+    assert np.array(stretches[0].positions).shape[1:] == (15, 3)
+    # In tenths of a millimetre, whatever the coding.
+    heights = [joints[stretches[0].joints.index("head")][1] for joints in stretches[0].positions]
+    assert heights == [round(height, 4) for height in heights]
+    assert 1.0 < heights[0] < 2.0
 
 
 async def test_a_motion_that_is_no_good_says_why_and_monitors_hear_of_it():
@@ -142,3 +178,8 @@ async def test_a_replay_writes_the_same_log_whatever_became_of_the_motion(tmp_pa
     replayed = [log_line(decision) for decision in replay(open_recording(path), core, again)]
     assert replayed == [msgspec.json.encode(message.decision) for message in decisions]
     assert any(b'"motion":"generated"' in line for line in replayed)
+    motion = [one.message for one in open_recording(path).records() if one.topic == "/motion"]
+    assert sum(len(stretch.positions) for stretch in motion) == 50
+    assert {stretch.command_id for stretch in motion} == {
+        message.decision.command.id for message in decisions if message.decision.command
+    }

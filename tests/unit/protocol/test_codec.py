@@ -9,9 +9,11 @@ from agent_server.errors import InvalidInput
 from agent_server.protocol import messages as m
 from agent_server.protocol.codec import CODECS
 from agent_server.protocol.convert import (
+    pack_pose_stream,
     pack_skeleton,
     skeleton_from_message,
     skeleton_to_message,
+    unpack_pose_stream,
 )
 from tests.support.bodies import frame
 
@@ -91,6 +93,20 @@ def test_the_wrong_kind_of_frame_is_refused():
         JSON.decode_client(b"{}")
     with pytest.raises(InvalidInput, match="binary"):
         MSGPACK.decode_client("{}")
+
+
+def test_a_stretch_of_motion_is_the_same_packed_and_unpacked():
+    points = [[(0.1, 1.4987, -0.03), (0.25, 0.9, 1.0)], [(0.1, 1.5, 0.0), (0.2, 0.9, -1.0)]]
+    stretch = m.PoseStreamMessage("lab/c4", 5, 25.0, ["head", "neck"], points, fallback="too fast")
+    assert unpack_pose_stream(pack_pose_stream(stretch)) == stretch
+
+
+@pytest.mark.parametrize(("joints", "size"), [(["head", "neck"], 36), (["head"], 10), ([], 12)])
+def test_a_stretch_of_motion_with_half_a_frame_is_refused(joints, size):
+    stretch = m.PackedPoseStreamMessage("lab/c4", 0, 25.0, joints, bytes(size))
+    with pytest.raises(InvalidInput, match=f"positions has {size} bytes") as raised:
+        unpack_pose_stream(stretch)
+    assert raised.value.field == "positions"
 
 
 def packed(joints, name="core9"):

@@ -8,9 +8,11 @@ from types import ModuleType
 import pytest
 
 from agent_server.domain.skeleton import SkeletonFrame
+from agent_server.protocol.messages import PoseStreamMessage
 from agent_server.recording.writer import RecordingWriter
 from tests.support.faces import FACES
 
+MOTION = PoseStreamMessage("s/c1", 0, 25.0, ["head", "neck"], [[[0.0, 1.5, 0.0], [0.0, 1.3, 0.0]]])
 GOLDEN_DIR = Path(__file__).parents[2] / "golden"
 
 
@@ -31,14 +33,15 @@ def session() -> ModuleType:
 def write(session: ModuleType, tmp_path: Path) -> Callable[[str], Path]:
     """Writes the small recording under a name; with what came after version 1 if asked to."""
 
-    def write_it(name: str, *, with_faces: bool = False) -> Path:
+    def write_it(name: str, *, with_later: bool = False) -> Path:
         path = tmp_path / name
         with RecordingWriter(path, session.METADATA) as writer:
             session.append_all(writer)
-            for value in FACES if with_faces else ():
+            for value in FACES if with_later else ():
                 writer.append_input(value, (5, 7))
-            if with_faces:
+            if with_later:
                 writer.append_image(b"\xff\xd8 jpeg", 3_000_000_007)
+                writer.append_output(MOTION, 3_000_000_008)
         return path
 
     return write_it

@@ -25,7 +25,7 @@ def records_with_schemas(path: Path) -> list[tuple[str, dict[str, Any], Any]]:
 
 
 def written(write: Callable[..., Path]) -> list[tuple[str, dict[str, Any], Any]]:
-    return records_with_schemas(write("a.mcap", with_faces=True))
+    return records_with_schemas(write("a.mcap", with_later=True))
 
 
 def refused(schema: dict[str, Any], place: str) -> list[str]:
