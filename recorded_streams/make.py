@@ -19,9 +19,9 @@ from agent_server.recording.reader import open_recording
 from agent_server.recording.sink import AT_ONCE
 from agent_server.recording.writer import RecordingWriter
 from agent_server.service.core import Core
+from agent_server.service.loading import load_models, load_room
 from agent_server.service.replay import log_line, replay
 from agent_server.synthetic.scenario import SCENARIOS, Scenario, play
-from agent_server.transports.server import load_models, load_room
 
 HERE = Path(__file__).parent
 

@@ -23,9 +23,9 @@ from agent_server.face.mesh import FaceMesh, Mesh
 from agent_server.face.regions import region_of_points
 from agent_server.face.tracker import FaceTracker
 from agent_server.inference.runtime import OnnxAffect, OnnxFaceNetwork
+from agent_server.service.loading import DETECTOR, MESHES
 from agent_server.synthetic.face import SyntheticFace
 from agent_server.synthetic.portrait import portrait
-from agent_server.transports.server import DETECTOR, MESHES
 
 WIDTH, HEIGHT = 640, 480
 WARM_UP = 5

@@ -24,7 +24,8 @@ from agent_server.config import Settings, load_settings
 from agent_server.protocol.codec import CODECS
 from agent_server.service.auth import OPEN
 from agent_server.service.hub import Hub
-from agent_server.transports.server import address, bind, build_hub, load_models
+from agent_server.service.loading import load_models
+from agent_server.transports.server import address, bind, build_hub
 from agent_server.transports.websocket import websocket_router
 
 

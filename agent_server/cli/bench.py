@@ -28,7 +28,7 @@ from agent_server.bench.recording import measure_recording
 from agent_server.bench.replay import measure_replay
 from agent_server.cli.options import FuturesOption, JsonOption, run, settings_with
 from agent_server.config import Settings
-from agent_server.transports.server import load_models, load_room
+from agent_server.service.loading import load_models, load_room
 
 bench = typer.Typer(
     name="bench",

@@ -15,7 +15,8 @@ from agent_server import assets
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
 from agent_server.errors import AgentServerError
-from agent_server.transports.server import address, bind, load_models, load_room
+from agent_server.service.loading import load_models, load_room
+from agent_server.transports.server import address, bind
 
 LEAST_FREE_MB = 200
 """A recording takes some 60 MB an hour, and a full disk ends it."""

@@ -27,8 +27,9 @@ from agent_server.errors import RecordingError
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import Recording, open_recording
 from agent_server.service.hub import Hub
+from agent_server.service.loading import load_models
 from agent_server.service.seats import STAND_IN
-from agent_server.transports.server import address, bind, build_hub, load_models, serving
+from agent_server.transports.server import address, bind, build_hub, serving
 
 SESSION = "demo"
 CLIENT = "agent-server-demo"

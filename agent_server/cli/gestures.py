@@ -25,8 +25,9 @@ from agent_server.domain.stamp import to_ns
 from agent_server.errors import AgentServerError, ConfigError
 from agent_server.recording.takes import TakePlan
 from agent_server.service.hub import Hub
+from agent_server.service.loading import load_models, load_room
 from agent_server.service.take_recorder import TakeRecorder
-from agent_server.transports.server import address, bind, load_models, load_room, serving
+from agent_server.transports.server import address, bind, serving
 from agent_server.transports.websocket import SESSION_ID, SESSION_ID_RULE
 
 LINGER_S = 24 * 3600.0

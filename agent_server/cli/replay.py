@@ -39,9 +39,9 @@ from agent_server.recording.records import SensorChanged
 from agent_server.recording.topics import CORE
 from agent_server.service.core import Core
 from agent_server.service.decision_log import changes, read_log
+from agent_server.service.loading import load_models, load_room
 from agent_server.service.recorder import settings_hash
 from agent_server.service.replay import replay as replay_recording
-from agent_server.transports.server import load_models, load_room
 
 log = logging.getLogger(__name__)
 

@@ -28,15 +28,9 @@ from agent_server.cli.options import (
 )
 from agent_server.service.auth import Access
 from agent_server.service.hub import Hub
+from agent_server.service.loading import load_models
 from agent_server.service.secrets import load_access
-from agent_server.transports.server import (
-    address,
-    bind,
-    build_hub,
-    check_exposure,
-    load_models,
-    serving,
-)
+from agent_server.transports.server import address, bind, build_hub, check_exposure, serving
 
 
 def serve(

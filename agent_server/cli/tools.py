@@ -20,7 +20,7 @@ from agent_server.qa.tools.cut import cut as cut_recording
 from agent_server.qa.tools.cut import decision_time
 from agent_server.qa.tools.info import RecordingInfo, describe
 from agent_server.qa.tools.merge import merge as merge_recordings
-from agent_server.transports.server import load_models
+from agent_server.service.loading import load_models
 from agent_server.transports.websocket import SESSION_ID, SESSION_ID_RULE
 
 InArgument = Annotated[Path, typer.Argument(metavar="IN.mcap", help="A recording.")]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from agent_server.config import Settings
 from agent_server.qa.watch import WatchedCore
 from agent_server.scene.rulebook import Rules
+from agent_server.service.loading import load_models, load_room
 from agent_server.service.models import Models
-from agent_server.transports.server import load_models, load_room
 
 
 @dataclass(frozen=True, slots=True)

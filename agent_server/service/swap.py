@@ -7,18 +7,14 @@ the new one has decided.
 
 import asyncio
 import logging
-from dataclasses import replace
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
 
 from agent_server.errors import BundleError
-from agent_server.inference.runtime import OnnxClassifier, OnnxPredictor
 from agent_server.service.hub import Hub
-from agent_server.service.models import Models
+from agent_server.service.loading import Swappable, exchanged
 
 log = logging.getLogger(__name__)
-
-Swappable = Literal["predictor", "classifier"]
 
 
 class Swapper:
@@ -26,14 +22,13 @@ class Swapper:
 
     Args:
         hub: The sessions, whose models are changed.
-        predictor: Folder of the predictor's bundle now.
-        classifier: Folder of the classifier's.
+        folders: Where the models in use were read from.
         allowed: Folder within which bundles may be named from outside; None allows nothing.
     """
 
-    def __init__(self, hub: Hub, predictor: Path, classifier: Path, allowed: Path | None) -> None:
+    def __init__(self, hub: Hub, folders: Mapping[Swappable, Path], allowed: Path | None) -> None:
         self._hub = hub
-        self._folders: dict[Swappable, Path] = {"predictor": predictor, "classifier": classifier}
+        self._folders = dict(folders)
         self._allowed = None if allowed is None else allowed.resolve()
         self._turn = asyncio.Lock()
 
@@ -61,42 +56,30 @@ class Swapper:
                 f"{path} lies outside the folder that models may be taken from: name one within it"
             )
         async with self._turn:
-            await self._change({**self._folders, which: folder}, (which,))
+            await self._change({which: folder})
         return self._hub.models.hashes
 
     async def reread(self) -> None:
-        """Read both bundles again from where they are, both or none.
+        """Read all these bundles again from where they are, all or none.
 
         Raises:
             BundleError: If one is not good; all stays as it was.
         """
         async with self._turn:
-            await self._change(self._folders, ("predictor", "classifier"))
+            await self._change(self._folders)
 
-    async def _change(self, folders: dict[Swappable, Path], which: tuple[Swappable, ...]) -> None:
+    async def _change(self, folders: Mapping[Swappable, Path]) -> None:
         before = self._hub.models
-        after = await asyncio.to_thread(_loaded, before, folders, which)
+        after = await asyncio.to_thread(exchanged, before, folders)
         labels, others = before.classifier.labels, after.classifier.labels
         if labels != others:
             raise BundleError(
                 f"{folders['classifier']} names the gestures {', '.join(others)}, and sessions "
                 f"were told {', '.join(labels)}: start the server with it"
             )
-        self._folders = folders
+        self._folders.update(folders)
         if after.hashes == before.hashes:
             log.info("the models are the same")
             return
         self._hub.use_models(after)
         log.warning("models changed: %s", after.hashes)
-
-
-def _loaded(before: Models, folders: dict[Swappable, Path], which: tuple[Swappable, ...]) -> Models:
-    models = before
-    try:
-        if "predictor" in which:
-            models = replace(models, predictor=OnnxPredictor(folders["predictor"]))
-        if "classifier" in which:
-            models = replace(models, classifier=OnnxClassifier(folders["classifier"]))
-    except OSError as error:
-        raise BundleError(f"a bundle cannot be read: {error}") from error
-    return models

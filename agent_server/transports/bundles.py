@@ -6,7 +6,8 @@ from fastapi.responses import FileResponse, JSONResponse, Response
 from agent_server import assets
 from agent_server.errors import BundleError
 from agent_server.inference.manifest import MANIFEST_FILE, MODEL_FILE
-from agent_server.service.swap import Swappable, Swapper
+from agent_server.service.loading import Swappable
+from agent_server.service.swap import Swapper
 from agent_server.transports.guard import require
 
 PAGE_NETWORKS = ("face_detector", "face_mesh")

@@ -10,8 +10,6 @@ import sys
 import threading
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
-from importlib import resources
-from importlib.resources.abc import Traversable
 from pathlib import Path
 
 import uvicorn
@@ -19,21 +17,12 @@ import uvicorn
 from agent_server import assets
 from agent_server.clock import SystemClock
 from agent_server.config import Settings
-from agent_server.errors import BundleError, ConfigError, RuleError
-from agent_server.inference.reactor import OnnxReactor
-from agent_server.inference.runtime import (
-    OnnxAffect,
-    OnnxClassifier,
-    OnnxFaceNetwork,
-    OnnxPredictor,
-    OnnxSampler,
-)
-from agent_server.scene.rulebook import Rules
-from agent_server.scene.rules import default_rules, load_rules
+from agent_server.errors import BundleError, ConfigError
 from agent_server.service.auth import OPEN, Access
 from agent_server.service.hub import Hub
 from agent_server.service.journal import Journal
-from agent_server.service.models import Drawing, FaceNetworks, Models
+from agent_server.service.loading import bundle_folders, load_room, rule_file
+from agent_server.service.models import Models
 from agent_server.service.recorder import recorder
 from agent_server.service.store import FolderStore
 from agent_server.service.swap import Swapper
@@ -44,52 +33,6 @@ from agent_server.transports.door import Door
 from agent_server.transports.guard import is_loopback
 
 log = logging.getLogger(__name__)
-
-PREDICTOR = "ma_wgan_server"
-CLASSIFIER = "interformer_server"
-SAMPLER = "sampler_server"
-DETECTOR = "face_detector"
-MESHES = {"full": "face_mesh", "fast": "face_mesh_fast"}
-AFFECT_SOURCES = ("mesh", "points68", "blendshapes")
-
-
-def load_models(settings: Settings | None = None) -> Models:
-    """Load and check the bundles that the server uses.
-
-    Args:
-        settings: They may name other bundles than those that ship.
-
-    Raises:
-        BundleError: If a bundle is missing, altered or wrong.
-    """
-    shipped = assets.bundles()
-    settings = settings or Settings()
-    mesh = MESHES[settings.face.mesh]
-    chosen = settings.models
-    drawing = None
-    if chosen.futures > 1:
-        sampler = OnnxSampler(Path(chosen.sampler or shipped / SAMPLER), chosen.futures - 1)
-        drawing = Drawing(sampler, chosen.futures, chosen.futures_quality)
-    predictor, classifier = bundle_folders(settings)
-    return Models(
-        OnnxPredictor(predictor),
-        OnnxClassifier(classifier),
-        {source: OnnxAffect(shipped / f"affect_{source}", source) for source in AFFECT_SOURCES},
-        FaceNetworks(
-            OnnxFaceNetwork(shipped / DETECTOR, "detector"), OnnxFaceNetwork(shipped / mesh, "mesh")
-        ),
-        drawing,
-        None if chosen.reactions is None else OnnxReactor(Path(chosen.reactions)),
-    )
-
-
-def bundle_folders(settings: Settings) -> tuple[Path, Path]:
-    """Where predictor and classifier are read from."""
-    chosen, shipped = settings.models, assets.bundles()
-    return (
-        Path(chosen.predictor or shipped / PREDICTOR),
-        Path(chosen.classifier or shipped / CLASSIFIER),
-    )
 
 
 def build_hub(settings: Settings, models: Models, record_to: Path | None = None) -> Hub:
@@ -116,7 +59,7 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
                 f"{record_to} cannot be made to record into: {error.strerror or error}; name "
                 "another folder with --record"
             ) from error
-        rule_text = _rule_file(settings).read_bytes()
+        rule_text = rule_file(settings).read_bytes()
 
         def open_journal(session: str) -> Journal:
             # Those in use when the session is opened, which need not be those of the start.
@@ -129,36 +72,6 @@ def build_hub(settings: Settings, models: Models, record_to: Path | None = None)
     watchers = () if traces is None else (traces,)
     hub = Hub(settings, room, models, clock, open_journal, store, avatar, watchers)
     return hub  # the journals look at it
-
-
-def _rule_file(settings: Settings) -> Traversable:
-    """The room's rules as a file, which was read and found right."""
-    if settings.rules is not None:
-        return Path(settings.rules)
-    return resources.files("agent_server.scene") / "room.toml"
-
-
-def load_room(settings: Settings, models: Models) -> Rules:
-    """Read the room's rules for the gestures that the classifier knows.
-
-    Raises:
-        RuleError: If the rule file is wrong, a rule asks for a generated motion and no model
-            makes one, or there is no file and the room that ships reacts to gestures that the
-            classifier does not know.
-    """
-    known = models.classifier.labels
-    if settings.rules is not None:
-        generates = models.reactor is not None
-        return load_rules(Path(settings.rules), known, generates=generates)
-    try:
-        return default_rules(known)
-    except RuleError as error:
-        raise RuleError(
-            f"the room that ships does not go with the classifier {models.classifier.name} "
-            f"({error}): copy {resources.files('agent_server.scene') / 'room.toml'}, leave rules "
-            "for the known gestures alone in it, add some for the new ones, and name the copy with "
-            "--rules FILE, or with rules = 'FILE' in the settings"
-        ) from error
 
 
 def bind(settings: Settings) -> socket.socket:
@@ -284,7 +197,7 @@ async def serving(
     http, websocket = Door(settings).protocols()
     folder = settings.models.folder
     swapper = Swapper(
-        hub, *bundle_folders(settings), allowed=None if folder is None else Path(folder)
+        hub, bundle_folders(settings), allowed=None if folder is None else Path(folder)
     )
     server = _Server(
         hub,

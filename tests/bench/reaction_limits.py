@@ -19,9 +19,9 @@ from agent_server.config import Settings
 from agent_server.inference.reactor import OnnxReactor
 from agent_server.qa.watch import WatchedCore
 from agent_server.recording.reader import open_recording
+from agent_server.service.loading import load_models, load_room
 from agent_server.service.replay import replay
 from agent_server.stages.react import Doubt, noise_of, react
-from agent_server.transports.server import load_models, load_room
 from models.data.interactions import facing, interaction_set
 
 ROOT = Path(__file__).parents[2]

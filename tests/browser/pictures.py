@@ -12,7 +12,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
-from agent_server.transports.server import load_models
+from agent_server.service.loading import load_models
 from tests.browser.test_room import enter, is_at_a_command, is_settled, playing, watch
 from tests.support.browser import browsing
 from tests.support.live import live

@@ -14,7 +14,7 @@ from agent_server.inference.runtime import OnnxFaceNetwork
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import open_recording
 from agent_server.service.journal import NoJournal
-from agent_server.transports.server import load_models
+from agent_server.service.loading import load_models
 from tests.browser.test_page import COLD
 from tests.support.browser import browsing, needs_browser, until
 from tests.support.live import live

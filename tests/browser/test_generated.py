@@ -9,7 +9,7 @@ from pathlib import Path
 
 from agent_server.domain.command import Motion
 from agent_server.inference.reactor import OnnxReactor
-from agent_server.transports.server import load_models
+from agent_server.service.loading import load_models
 from tests.browser.test_room import asking, enter, is_settled, patient, watch
 from tests.support.browser import browsing, needs_browser
 from tests.support.live import live

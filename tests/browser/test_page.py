@@ -7,7 +7,7 @@ from pathlib import Path
 from agent_server import assets
 from agent_server.client.once import send_paced
 from agent_server.recording.reader import open_recording
-from agent_server.transports.server import load_models
+from agent_server.service.loading import load_models
 from tests.support.browser import browsing, needs_browser, picture, until
 from tests.support.live import live
 

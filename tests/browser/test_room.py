@@ -13,7 +13,7 @@ from agent_server.client import Options, Renderer
 from agent_server.client.once import send_paced
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import open_recording
-from agent_server.transports.server import load_models
+from agent_server.service.loading import load_models
 from tests.support.browser import browsing, needs_browser, until
 from tests.support.live import live
 

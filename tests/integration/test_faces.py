@@ -15,9 +15,9 @@ from agent_server.domain.face import FaceBlendshapes
 from agent_server.protocol import messages as m
 from agent_server.protocol.inputs import input_to_message
 from agent_server.recording.reader import open_recording
+from agent_server.service.loading import load_models
 from agent_server.service.recorder import recorder
 from agent_server.synthetic.face import SyntheticFace
-from agent_server.transports.server import load_models
 from tests.support.live import live, next_of
 from tests.support.pictures import framed, jpeg, labelled, needs_faces, picture
 

@@ -12,7 +12,7 @@ from agent_server.cli.main import app
 from agent_server.client.once import send_paced
 from agent_server.protocol import messages as m
 from agent_server.recording.reader import open_recording
-from agent_server.transports.server import load_models
+from agent_server.service.loading import load_models
 from tests.support.live import all_decisions, live
 
 DATA = Path(os.environ.get("AGENT_SERVER_DATA", "nowhere")) / "msrc12"

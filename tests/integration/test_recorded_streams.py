@@ -9,9 +9,9 @@ import pytest
 from agent_server.config import Settings
 from agent_server.recording.reader import open_recording
 from agent_server.service.core import Core
+from agent_server.service.loading import load_models, load_room
 from agent_server.service.replay import log_line, replay
 from agent_server.synthetic.scenario import SCENARIOS, play
-from agent_server.transports.server import load_models, load_room
 
 STREAMS = Path(__file__).parents[2] / "recorded_streams"
 NAMES = sorted(path.stem for path in STREAMS.glob("*.mcap"))

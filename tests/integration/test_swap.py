@@ -1,10 +1,12 @@
 """Models are changed while sessions go on; what is not good changes nothing."""
 
 import asyncio
+import logging
 import os
 import shutil
 import signal
 from functools import partial
+from pathlib import Path
 
 import httpx
 import msgspec
@@ -18,6 +20,7 @@ from agent_server.errors import RecordingError
 from agent_server.inference.manifest import (
     MANIFEST_FILE,
     MotionManifest,
+    ReactionManifest,
     read_manifest,
     write_manifest,
 )
@@ -29,12 +32,13 @@ from agent_server.recording.topics import CORE
 from agent_server.scene.rules import default_rules
 from agent_server.service.auth import Access, issue
 from agent_server.service.core import Core
+from agent_server.service.loading import PREDICTOR, SAMPLER, load_models
 from agent_server.service.recorder import recorder
 from agent_server.service.replay import replay
-from agent_server.transports.server import load_models
 from tests.support.bodies import stream
 from tests.support.live import live, next_of
 
+REACTOR = Path(__file__).parents[2] / "models" / "benchmarks" / "interformer_sbu"
 SECRET = "for tests alone, and long enough for it"  # noqa: S105
 
 
@@ -43,10 +47,11 @@ def shipped():
     return load_models()
 
 
-def copied(folder, name):
-    """A bundle of another name, made from the shipped predictor."""
-    shutil.copytree(assets.bundles() / "ma_wgan_server", folder / name)
-    manifest = read_manifest(assets.bundles() / "ma_wgan_server")
+def copied(folder, name, source=None, kind=MotionManifest):
+    """A bundle of another name, made from the shipped predictor or another one."""
+    source = source or assets.bundles() / PREDICTOR
+    shutil.copytree(source, folder / name)
+    manifest = read_manifest(source, kind)
     write_manifest(folder / name, msgspec.structs.replace(manifest, name=name))
     return folder / name
 
@@ -59,6 +64,12 @@ async def send(sensor, seconds, start=0):
     for frame in stream(seconds, start=start):
         await sensor.send(skeleton_to_message(frame))
         await asyncio.sleep(0.005)
+
+
+async def logged(caplog, words):
+    async with asyncio.timeout(10):
+        while words not in caplog.text:  # noqa: ASYNC110 - a log has no events
+            await asyncio.sleep(0.02)
 
 
 async def names_of_next(monitor):
@@ -104,6 +115,48 @@ async def test_a_good_bundle_takes_over_and_no_session_notices(shipped, tmp_path
     core = Core("s", settings, default_rules(models.classifier.labels), models)
     with pytest.raises(RecordingError, match="other models decided"):
         list(replay(recording, core, models))
+
+
+@pytest.mark.parametrize(
+    ("which", "source", "kind"),
+    [
+        ("sampler", assets.bundles() / SAMPLER, MotionManifest),
+        ("reactions", REACTOR, ReactionManifest),
+    ],
+)
+async def test_what_draws_and_what_reacts_is_changed_where_it_is_in_use(
+    tmp_path, caplog, which, source, kind
+):
+    copied(tmp_path, "newer", source, kind)
+    settings = swapping(tmp_path, futures=3, reactions=str(REACTOR))
+    models = load_models(settings)
+    async with (
+        live(models, settings) as server,
+        httpx.AsyncClient(base_url=server.url) as http,
+    ):
+        answer = await http.post(f"/v1/models/{which}", params={"path": "newer"})
+        assert answer.status_code == 200, answer.text
+        assert set(answer.json()["models"]) == (set(models.hashes) - {source.name}) | {"newer"}
+        assert server.hub.models.hashes == answer.json()["models"]
+        with caplog.at_level(logging.INFO):
+            os.kill(os.getpid(), signal.SIGHUP)
+            await logged(caplog, "the models are the same")
+        assert server.hub.models.hashes == answer.json()["models"]
+
+
+@pytest.mark.parametrize(
+    ("which", "said"), [("sampler", "draws no futures"), ("reactions", "makes no reactions")]
+)
+async def test_what_is_not_in_use_is_not_changed(shipped, tmp_path, which, said):
+    copied(tmp_path, "newer")
+    async with (
+        live(shipped, swapping(tmp_path)) as server,
+        httpx.AsyncClient(base_url=server.url) as http,
+    ):
+        answer = await http.post(f"/v1/models/{which}", params={"path": "newer"})
+        assert answer.status_code == 422
+        assert said in answer.json()["detail"]
+        assert server.hub.models is shipped
 
 
 @pytest.mark.parametrize(
@@ -174,14 +227,12 @@ async def test_only_an_operator_of_all_sessions_may_swap_and_only_where_it_is_me
         assert (answer.status_code, "folder in [models]" in answer.text) == (422, True)
 
 
-async def test_hup_reads_the_bundles_again_both_or_none(tmp_path, caplog):
+async def test_hup_reads_the_bundles_again_all_or_none(tmp_path, caplog):
     folder = copied(tmp_path, "mine")
     settings = swapping(tmp_path, predictor=str(folder))
     models = load_models(settings)
     async with live(models, settings) as server:
         (folder / "CARD.md").write_text("spoilt")
         os.kill(os.getpid(), signal.SIGHUP)
-        async with asyncio.timeout(5):
-            while "stay as they are" not in caplog.text:  # noqa: ASYNC110 - a log has no events
-                await asyncio.sleep(0.02)
+        await logged(caplog, "stay as they are")
         assert server.hub.models is models

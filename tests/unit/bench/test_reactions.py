@@ -8,8 +8,8 @@ from agent_server.bench.reactions import Stream, measure_reactions, played, reco
 from agent_server.config import Settings
 from agent_server.domain.label import Label
 from agent_server.errors import ConfigError
+from agent_server.service.loading import load_models, load_room
 from agent_server.synthetic.scenario import SCENARIOS
-from agent_server.transports.server import load_models, load_room
 
 STREAMS = Path(__file__).parents[3] / "recorded_streams"
 

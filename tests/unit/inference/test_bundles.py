@@ -19,7 +19,7 @@ from agent_server.inference.runtime import (
     OnnxPredictor,
     OnnxSampler,
 )
-from agent_server.transports.server import (
+from agent_server.service.loading import (
     AFFECT_SOURCES,
     CLASSIFIER,
     DETECTOR,

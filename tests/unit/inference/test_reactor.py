@@ -11,8 +11,8 @@ from agent_server.config import ModelSettings, Settings
 from agent_server.errors import BundleError, RuleError
 from agent_server.inference.manifest import write_manifest
 from agent_server.inference.reactor import OnnxReactor
+from agent_server.service.loading import PREDICTOR, load_models, load_room
 from agent_server.stages.react import noise_of
-from agent_server.transports.server import PREDICTOR, load_models, load_room
 
 BENCHMARKS = Path(__file__).parents[3] / "models" / "benchmarks"
 NAMES = ("interformer_sbu", "interformer_k3hi")

@@ -16,9 +16,9 @@ from agent_server.inference.fake import LastFramePredictor, RuleClassifier
 from agent_server.inference.manifest import read_manifest, write_manifest
 from agent_server.scene import rules as scene_rules
 from agent_server.service.core import Core
+from agent_server.service.loading import CLASSIFIER, PREDICTOR, load_models, load_room
 from agent_server.service.models import Models
 from agent_server.service.replay import replay_stream
-from agent_server.transports.server import CLASSIFIER, PREDICTOR, load_models, load_room
 from tests.support.bodies import stream
 from tests.support.models import covers_ears
 
