@@ -46,14 +46,14 @@ class Plan(msgspec.Struct, frozen=True):
     """What a crowd is to do.
 
     Attributes:
-        url: Address of the server.
+        urls: Addresses of the servers; people are spread over them by their number.
         stream: File with the messages of the stream, as MessagePack.
         subprotocol: Their coding.
         people: Numbers of its people; they tell when each of them begins, and where.
         seconds: How long they send after the warm-up.
     """
 
-    url: str
+    urls: list[str]
     stream: str
     subprotocol: str
     people: list[int]
@@ -149,8 +149,7 @@ async def run_crowd(plan: Plan, stream: list[Sent]) -> Told:
         listening = []
         for number in plan.people:
             sockets = [
-                await _join(stack, plan, f"load-{number}", role)
-                for role in ("monitor", "renderer", "sensor")
+                await _join(stack, plan, number, role) for role in ("monitor", "renderer", "sensor")
             ]
             person = _Person(sockets[2], told)
             listening.append(group.create_task(person.watch(sockets[0], decode)))
@@ -167,10 +166,11 @@ async def run_crowd(plan: Plan, stream: list[Sent]) -> Told:
     return told
 
 
-async def _join(stack: AsyncExitStack, plan: Plan, session: str, role: m.Role) -> ClientConnection:
+async def _join(stack: AsyncExitStack, plan: Plan, number: int, role: m.Role) -> ClientConnection:
+    url = plan.urls[number % len(plan.urls)]
     socket = await stack.enter_async_context(
         connect(
-            socket_address(plan.url, session, role),
+            socket_address(url, f"load-{number}", role),
             subprotocols=[Subprotocol(plan.subprotocol)],
             compression=None,
             max_size=None,

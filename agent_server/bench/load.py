@@ -9,7 +9,7 @@ import time
 import urllib.request
 from asyncio.subprocess import PIPE, Process
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import asynccontextmanager
+from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -44,12 +44,14 @@ class Load:
         coding: What clients speak.
         faces: Whether they send 478 landmarks at 10 Hz beside the body at 30 Hz.
         seconds: For how long, after a warm-up.
+        servers: Server processes over which the sessions are spread.
     """
 
     stack: Stack = "uvicorn"
     coding: Coding = "json"
     faces: bool = True
     seconds: float = 15.0
+    servers: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,12 +67,12 @@ class LoadResult:
             without any.
         command_p99_ms: Its 99th percentile.
         dropped: Everything that the server did not use or did not send.
-        rss_mb: Resident memory of the server at the end, in MB.
+        rss_mb: Resident memory of the server at the end, in MB; of all of them, where it is many.
         decisions: How many were measured.
         commands: How many were measured.
         late_ms: How late the clients themselves sent at worst: when this is large, the machine
             is too small, or too busy, for clients and server together.
-        server_cores: Processor time of the server over time.
+        server_cores: Processor time of the server, or servers, over time.
         machine_load: Runnable processes of the whole machine before it began, mean of a minute.
     """
 
@@ -113,8 +115,12 @@ async def measure_load(sessions: int, load: Load) -> LoadResult:
     with tempfile.TemporaryDirectory() as folder:
         stream = Path(folder) / "stream.msgpack"
         stream.write_bytes(msgspec.msgpack.encode(stream_of(load)))
-        async with server_process(load.stack, sessions, Path(folder)) as url:
-            told, before, after = await _play(url, sessions, load, stream)
+        async with AsyncExitStack() as stack:
+            urls = [
+                await stack.enter_async_context(server_process(load.stack, sessions, Path(folder)))
+                for _ in range(load.servers)
+            ]
+            told, before, after = await _play(urls, sessions, load, stream)
     decisions = [ms for one in told for ms in one.decisions_ms]
     commands = [ms for one in told for ms in one.commands_ms]
     if not decisions:
@@ -167,8 +173,9 @@ async def find_capacity(
 def told_in_a_line(run: LoadResult) -> str:
     """For people who wait."""
     verdict = "holds" if run.holds else "does not hold"
+    spread = f" on {run.load.servers} servers" if run.load.servers > 1 else ""
     return (
-        f"{run.load.stack}, {run.sessions} sessions: p50 {run.p50_ms:.1f}, "
+        f"{run.load.stack}, {run.sessions} sessions{spread}: p50 {run.p50_ms:.1f}, "
         f"p99 {run.p99_ms:.1f} ms, {run.dropped} dropped, {run.rss_mb:.0f} MB, "
         f"{run.server_cores:.2f} cores: {verdict}"
     )
@@ -194,13 +201,13 @@ def stream_of(load: Load) -> list[Sent]:
 
 
 async def _play(
-    url: str, sessions: int, load: Load, stream: Path
+    urls: list[str], sessions: int, load: Load, stream: Path
 ) -> tuple[list[Told], _Figures, _Figures]:
     crowds = -(-sessions // A_CROWD)
     processes = []
     for index in range(crowds):
         people = list(range(index, sessions, crowds))
-        plan = Plan(url, str(stream), SUBPROTOCOLS[load.coding], people, load.seconds)
+        plan = Plan(urls, str(stream), SUBPROTOCOLS[load.coding], people, load.seconds)
         process = await asyncio.create_subprocess_exec(
             *(sys.executable, "-m", "agent_server.bench.crowd"),
             stdin=PIPE,
@@ -214,9 +221,9 @@ async def _play(
     for process in processes:
         await _say(process, f"{begin_s}\n".encode())
     await asyncio.sleep(begin_s + WARM_UP_S - time.monotonic())
-    before = await asyncio.to_thread(_figures, url)
+    before = await asyncio.to_thread(_figures, urls)
     await asyncio.sleep(load.seconds)
-    after = await asyncio.to_thread(_figures, url)
+    after = await asyncio.to_thread(_figures, urls)
     told = [msgspec.json.decode(await _hear(process), type=Told) for process in processes]
     for process in processes:
         await process.wait()
@@ -237,11 +244,12 @@ async def _hear(process: Process) -> bytes:
     return line
 
 
-def _figures(url: str) -> _Figures:
-    with urllib.request.urlopen(f"{url}/metrics", timeout=30) as answer:  # noqa: S310 - our own
-        text = answer.read().decode()
+def _figures(urls: list[str]) -> _Figures:
     samples = [
-        sample for family in text_string_to_metric_families(text) for sample in family.samples
+        sample
+        for url in urls
+        for family in text_string_to_metric_families(_metrics(url))
+        for sample in family.samples
     ]
 
     def total(name: str) -> float:
@@ -255,6 +263,11 @@ def _figures(url: str) -> _Figures:
     )
 
 
+def _metrics(url: str) -> str:
+    with urllib.request.urlopen(f"{url}/metrics", timeout=30) as answer:  # noqa: S310 - our own
+        return str(answer.read().decode())
+
+
 @asynccontextmanager
 async def server_process(
     stack: Stack, sessions: int, folder: Path, settings_toml: str = ""
@@ -264,7 +277,7 @@ async def server_process(
     Args:
         stack: What carries its websockets.
         sessions: How many it must admit.
-        folder: Where its settings may be written.
+        folder: Where its settings may be written; they are read before it gives its address.
         settings_toml: Further settings of its section ``server``.
 
     Raises:

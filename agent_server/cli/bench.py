@@ -126,6 +126,9 @@ def load(
     ] = False,
     coding: Annotated[Coding, typer.Option(help="What the clients speak.")] = "json",
     stack: Annotated[Stack, typer.Option(help="What carries the websockets.")] = "uvicorn",
+    servers: Annotated[
+        int, typer.Option(min=1, help="Server processes over which the sessions are spread.")
+    ] = 1,
     compare: Annotated[bool, typer.Option("--compare", help="Measure every stack.")] = False,
     start: Annotated[int, typer.Option(min=1, help="Where to begin to look.")] = 25,
     step: Annotated[int, typer.Option(min=1, help="How finely to look.")] = 10,
@@ -136,7 +139,8 @@ def load(
 ) -> None:
     """Real websocket clients in other processes: latency, drops and memory."""
     chosen = [
-        Load(each, coding, not body_only, seconds) for each in (STACKS if compare else (stack,))
+        Load(each, coding, not body_only, seconds, servers)
+        for each in (STACKS if compare else (stack,))
     ]
     console = Console(stderr=True)
     results: dict[str, list[LoadResult]] = {}
