@@ -6,6 +6,8 @@ from agent_server.bench.load import BOUND_MS, LoadResult
 
 WIDTH, HEIGHT = 720, 560
 LEFT, RIGHT, TOP, GAP = 64, 24, 34, 66
+MOST_OF_BOUND = 3
+"""A panel with a bound ends at this many times of it; what lies beyond stands at its top edge."""
 COLOURS = {"uvicorn": "#2563eb", "websockets": "#d97706"}
 
 
@@ -42,15 +44,17 @@ def _panel(
     bound: float | None,
 ) -> list[str]:
     values = [of(run) for some in runs.values() for run in some]
-    step = _step(max(values))
-    ceiling = step * (int(max(values) / step) + 1)
+    # Far beyond the bound it matters no more by how much.
+    highest = max(values) if bound is None else min(max(values), MOST_OF_BOUND * bound)
+    step = _step(highest)
+    ceiling = step * (int(highest / step) + 1)
     width = WIDTH - LEFT - RIGHT
 
     def x(sessions: float) -> float:
         return round(LEFT + width * sessions / most, 1)
 
     def y(value: float) -> float:
-        return round(top + height * (1 - value / ceiling), 1)
+        return round(top + height * (1 - min(1.0, value / ceiling)), 1)
 
     parts = [f'<text x="{LEFT}" y="{top - 12}" font-weight="600">{title}</text>']
     for index in range(int(ceiling / step) + 1):
@@ -83,6 +87,11 @@ def _panel(
             f'<circle cx="{x(run.sessions)}" cy="{y(of(run))}" r="4" stroke="{colour}" '
             f'stroke-width="2" fill="{colour if run.holds else "#fff"}"/>'
             for run in some
+        ]
+        parts += [
+            f'<text x="{x(run.sessions) - 2}" y="{y(of(run)) + 20}">{of(run):.0f}</text>'
+            for run in some
+            if of(run) > ceiling
         ]
     return parts
 

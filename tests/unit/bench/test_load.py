@@ -41,6 +41,17 @@ def test_late_decisions_late_commands_and_drops_do_not_hold(change):
     assert not replace(GOOD, **change).holds
 
 
+def test_what_is_far_beyond_the_bound_stands_at_the_top_with_its_number():
+    runs = [replace(GOOD, sessions=n, p99_ms=n * n / 8) for n in (10, 20, 80)]
+    root = ElementTree.fromstring(load_plot({"uvicorn": runs}))  # noqa: S314 - our own
+    line = root.find(f"{SVG}polyline")
+    heights = [float(point.split(",")[1]) for point in line.get("points").split()]
+    grid = [path.get("d") for path in root.iter(f"{SVG}path") if not path.get("stroke-dasharray")]
+    assert heights[2] == min(float(d.split()[1].partition("H")[0]) for d in grid)
+    assert heights[0] > heights[1] > heights[2] + 50
+    assert "800" in [text.text for text in root.iter(f"{SVG}text")]
+
+
 def test_the_plot_has_a_point_a_run_and_the_bound():
     runs = [replace(GOOD, sessions=n, p99_ms=n / 2, rss_mb=150 + n / 2) for n in (25, 50, 100, 150)]
     root = ElementTree.fromstring(load_plot({"uvicorn": runs, "websockets": runs[:2]}))  # noqa: S314 - our own
