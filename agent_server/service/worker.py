@@ -101,8 +101,8 @@ class InferenceWorker:
 
     @property
     def busy_since_s(self) -> float | None:
-        """Since when a thread is at one batch, on ``time.monotonic``: the longer; or None."""
-        since = (self.windows.busy_since_s, self.faces.busy_since_s)
+        """Since when a thread is at one batch, on ``time.monotonic``: the longest; or None."""
+        since = (one.busy_since_s for one in (self.windows, self.faces, self.reactions))
         return min((one for one in since if one is not None), default=None)
 
     async def infer(self, window: Window) -> Inference:

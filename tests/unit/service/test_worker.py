@@ -132,6 +132,31 @@ async def test_a_session_that_has_gone_costs_nothing():
     assert predictor.sizes == [1, 1]
 
 
+async def test_whichever_thread_is_longest_at_one_batch_is_told():
+    reacting = threading.Event()
+    predictor = Blocking()
+
+    def making():
+        reacting.wait(5)
+        yield "stretch"
+
+    async with running(Models(predictor, RuleClassifier(lambda _: "idle"))) as worker:
+        assert worker.busy_since_s is None
+        going_on = asyncio.create_task(worker.go_on(making()))
+        await asyncio.sleep(0.05)
+        first_s = worker.busy_since_s
+        assert first_s == worker.reactions.busy_since_s is not None
+        inferring = asyncio.create_task(worker.infer(window(0)))
+        await asyncio.sleep(0.05)
+        assert worker.busy_since_s == first_s < worker.windows.busy_since_s
+        reacting.set()
+        assert await going_on == "stretch"
+        assert worker.busy_since_s == worker.windows.busy_since_s
+        predictor.may_go.set()
+        await inferring
+        assert worker.busy_since_s is None
+
+
 def test_one_bad_window_of_a_batch_costs_the_others_nothing():
     class Picky(LastFramePredictor):
         def predict(self, seen):
