@@ -14,9 +14,11 @@ from torch import nn
 
 from models.data.interactions import JOINTS, Pairs, vary
 from models.evaluation.varied import vary_bodies, vary_pace
-from models.training.schedule import warm_cosine
+from models.training.brief import train_briefly
 
 VELOCITY_SCALE = 8.0
+WARM = 20
+"""Updates in which the rate rises."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,28 +119,25 @@ def train_judge(
         config: How.
         people: 1 for one who sees reactions, 2 for one who sees both people.
     """
-    config = config or JudgeConfig()
-    with torch.random.fork_rng():
-        torch.manual_seed(seed)
-        generator = torch.Generator().manual_seed(seed)
-        judge = RecurrentClassifier(config, classes, people).train()
-        optimizer = torch.optim.AdamW(
-            judge.parameters(), config.learning_rate, weight_decay=config.weight_decay
-        )
-        for step in range(config.steps):
-            for group in optimizer.param_groups:
-                group["lr"] = config.learning_rate * warm_cosine(step, config.steps, 20)
-            if people == 1:
-                batch = _varied(pairs, generator, swap, config)
-            else:  # both in view tell enough apart, and stay as they stand to each other
-                batch = vary(pairs.draw(config.batch, generator), generator, swap=swap)
-            logits = judge(judge.sees(batch), batch.lengths)
-            loss = F.cross_entropy(logits, batch.labels, label_smoothing=0.05)
-            optimizer.zero_grad(set_to_none=True)
-            torch.autograd.backward(loss)
-            nn.utils.clip_grad_norm_(judge.parameters(), 1.0)
-            optimizer.step()
-    return judge.eval()
+    settings = config or JudgeConfig()
+
+    def loss(judge: RecurrentClassifier, generator: torch.Generator) -> torch.Tensor:
+        if people == 1:
+            batch = _varied(pairs, generator, swap, settings)
+        else:  # both in view tell enough apart, and stay as they stand to each other
+            batch = vary(pairs.draw(settings.batch, generator), generator, swap=swap)
+        logits = judge(judge.sees(batch), batch.lengths)
+        return F.cross_entropy(logits, batch.labels, label_smoothing=0.05)
+
+    return train_briefly(
+        lambda: RecurrentClassifier(settings, classes, people),
+        loss,
+        seed,
+        steps=settings.steps,
+        learning_rate=settings.learning_rate,
+        weight_decay=settings.weight_decay,
+        warm=WARM,
+    )
 
 
 def _varied(
