@@ -145,7 +145,8 @@ class Delivery:
         context.audience.show(
             "ack",
             m.AckTelemetry(message.command_id, message.status, message.step, message.reason),
-            message.command_id,
+            # A word that comes too late does not take the place of how the command ended.
+            message.command_id if heard.taken else f"{message.command_id} late",
         )
 
     def change(self, event: ObjectChanged) -> None:

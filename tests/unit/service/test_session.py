@@ -110,6 +110,23 @@ async def test_a_renderer_that_comes_back_gets_the_command_that_is_being_carried
         assert await posted(r.join("renderer"), m.CommandMessage) == []
 
 
+async def test_a_word_that_comes_too_late_does_not_hide_how_the_command_ended():
+    async with room() as r:
+        sensor, renderer = r.join("sensor"), r.join("renderer")
+        monitor = r.join("monitor", topics=["command", "ack"])
+        await r.send(sensor, GESTURE)
+        (command,) = await posted(renderer, m.CommandMessage)
+        r.clock.advance(command.ttl_ms * 1_000_000)
+        # It is this very word that makes the session notice what time it is.
+        r.session.receive(renderer, m.AckMessage(command.id, "started"))
+        assert r.session.counters["stale_acks"] == 1
+        told = await posted(monitor, m.AckTelemetry)
+        assert [(one.command_id, one.status) for one in told] == [
+            (command.id, "expired"),
+            (command.id, "started"),
+        ]
+
+
 async def test_the_end_of_a_reaction_is_shown_although_no_command_follows():
     async with room() as r:
         sensor, monitor = r.join("sensor"), r.join("monitor", topics=["scene"])
