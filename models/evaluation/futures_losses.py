@@ -6,7 +6,7 @@ from typing import Any
 from agent_server.domain.arrays import Float32
 from models.evaluation.sampled import drawn_figures, trained_sampler
 from models.hp_gan.config import CONFIGS
-from models.hp_gan.sampler import Sampler
+from models.hp_gan.sampler import Sampler, random_vectors
 from models.hp_gan.source import server_source
 from models.hp_gan.train import load_hp_gan, train_on
 from models.training.run import INFO, Run
@@ -41,7 +41,8 @@ def losses_report(
     rows: dict[str, Any] = {}
     for name, config in ROWS.items():
         generator, _, judge = load_hp_gan(folder / config)
-        draw = trained_sampler(Sampler(generator, generator.config.noise, judge).eval())
+        table = random_vectors(generator.config.noise)
+        draw = trained_sampler(Sampler(generator, judge, table).eval())
         rows[name] = {
             where: drawn_figures(draw(seen, DRAWS), seen, true)
             for where, (seen, true) in held.items()

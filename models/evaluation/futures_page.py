@@ -24,7 +24,7 @@ from models.evaluation.gestures import Classify, Predict
 from models.evaluation.page import plot_section, write_page
 from models.evaluation.sampled import GOOD, Draw, drawn_figures, trained_sampler
 from models.evaluation.several import live_takes, real_gestures, several_report
-from models.hp_gan.sampler import Sampler
+from models.hp_gan.sampler import Sampler, random_vectors
 from models.hp_gan.train import load_hp_gan
 from models.ma_wgan.config import CONFIGS
 from models.ma_wgan.network import Predictor
@@ -71,9 +71,8 @@ def futures_report(
     streams = read_streams(data / "msrc12")
     features = features_report(critic, generator.config, streams)
     lived, gestures = live_takes(takes), real_gestures(streams)
-    other = trained_sampler(
-        Sampler(_ma_wgan(runs / "ma_wgan", data, cache), MA_WGAN.network.noise, judge).eval()
-    )
+    table = random_vectors(MA_WGAN.network.noise)
+    other = trained_sampler(Sampler(_ma_wgan(runs / "ma_wgan", data, cache), judge, table).eval())
     found = {
         "sampler": {
             name: {

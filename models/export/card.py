@@ -89,7 +89,8 @@ def sampler_card(manifest: MotionManifest) -> str:
         f"(B, {manifest.output_frames}, 9, 3) and `quality` (B,), how probably the future is real. "
         "Metres, origin at the navel of the last seen frame, axes of the camera frame, "
         f"{manifest.rate_hz} Hz. The random vectors are inside the graph: a number means the same "
-        "future of a motion everywhere.",
+        "future of a motion everywhere. They are of the quarter of many whose futures, on "
+        "validation windows, are judged real most often.",
         "",
         f"{FAMILIES[manifest.training.command.split()[4]]} The quality network of HP-GAN was "
         "trained beside it and taught nobody.",

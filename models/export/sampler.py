@@ -29,7 +29,8 @@ from models.export.bundle import GOLDEN_ROWS, LICENCE, SERVER_SOURCES
 from models.export.card import sampler_card
 from models.export.onnx import OPSET, require_close, write_graph
 from models.export.publish import publish, training_of
-from models.hp_gan.sampler import DRAWS, Sampler
+from models.hp_gan.sampler import DRAWS, Sampler, likely_vectors
+from models.hp_gan.source import server_validation
 from models.hp_gan.train import load_hp_gan
 from models.ma_wgan.train import load_predictor
 from models.training.run import read_best, read_info
@@ -62,7 +63,9 @@ def export_sampler(
     info = read_info(other or run)
     generator, _, judge = load_hp_gan(run)
     drawing = generator if other is None else load_predictor(other)
-    network = Sampler(drawing, drawing.config.noise, judge).eval()
+    noise = drawing.config.noise
+    asked = [held.seen for held in server_validation(data, cache).values()]
+    network = Sampler(drawing, judge, likely_vectors(drawing, noise, judge, asked)).eval()
     windows = {
         name: _metres(protocol_named(protocol).windows(data, cache))
         for protocol, name in MEASURED.items()

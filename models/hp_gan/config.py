@@ -33,7 +33,7 @@ class NetworkConfig:
     patch: int = 5
     width: int = 128
     layers: int = 2
-    critic_width: int = 192
+    critic_width: int = 384
     critic_layers: int = 3
     judge_width: int = 64
     classes: int = len(GESTURES)
@@ -77,14 +77,14 @@ class TrainConfig:
     """
 
     network: NetworkConfig = NetworkConfig()
-    steps: int = 600
-    batch: int = 24
-    learning_rate: float = 1e-3
+    steps: int = 2_000
+    batch: int = 32
+    learning_rate: float = 6e-4
     critic_rate: float = 1e-3
-    critic_steps: int = 2
+    critic_steps: int = 5
     judge_rate: float = 5e-4
     adversarial: float = 1.0
-    nearest: float = 50.0
+    nearest: float = 20.0
     consistency: float = 50.0
     diversity: float = 1.0
     energy: float = 50.0
@@ -92,8 +92,8 @@ class TrainConfig:
     classes: float = 0.1
     penalty: float = 10.0
     ema: float = 0.998
-    validate_every: int = 150
-    judged_from: int = 300
+    validate_every: int = 250
+    judged_from: int = 500
     synthetic_sequences: int = 2_000
 
     def __post_init__(self) -> None:
@@ -105,7 +105,7 @@ class TrainConfig:
 
 
 SERVER = TrainConfig()
-SHORT = replace(SERVER, steps=100, batch=16, validate_every=50, judged_from=100)
+SHORT = replace(SERVER, steps=250, validate_every=125, judged_from=250)
 
 CONFIGS: dict[str, TrainConfig] = {
     "server": SERVER,

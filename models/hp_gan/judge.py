@@ -7,6 +7,9 @@ from models.hp_gan.config import NetworkConfig
 from models.hp_gan.discriminator import whole_features
 from models.hp_gan.network import patches
 
+JUDGED_REAL = 0.5
+"""What is more probably real than not."""
+
 
 class Judge(nn.Module):
     """A recurrent layer over the motion, and attention over its moments.

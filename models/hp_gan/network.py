@@ -4,20 +4,26 @@ After Barsoum, Kender and Liu, "HP-GAN: Probabilistic 3D human motion prediction
 Workshops 2018): gated recurrent units read what was seen; a random vector ``z`` goes through a
 learnt map of its own into every layer's state; from there on the decoder reads what it has said
 last. Where this differs from the paper: 128 units instead of 1,024 and five frames a step of the
-recurrence instead of one, so that ten futures fit into a decision; the decoder gives movements
-instead of poses, so that a future starts where the past ends; inside, the body faces the front.
+recurrence instead of one, so that ten futures fit into a decision; the decoder says how fast the
+body goes at the end of each step, and in between its speed changes evenly, so that a future goes
+on as the past ended; bones keep the lengths that they had; inside, the body faces the front.
 """
 
 import torch
 from torch import nn
 
+from agent_server.domain.skeleton import CORE_BONES
 from models.hp_gan.config import NetworkConfig
+from models.ops.bones import with_lengths
 from models.ops.heading import from_front, heading, to_front
+from models.ops.losses import bone_lengths
 
 POSITION_SCALE = 3.0
 """Brings positions in metres to about unit size."""
 STEP_SCALE = 30.0
 """Brings steps in metres a frame to about unit size."""
+STEADY_FRAMES = 5
+"""The last speed is the mean over so many steps."""
 
 
 def motion_features(motion: torch.Tensor) -> torch.Tensor:
@@ -54,9 +60,12 @@ class Generator(nn.Module):
         self.decoder = nn.ModuleList(
             nn.GRUCell(config.width, config.width) for _ in range(config.layers)
         )
-        self.out = nn.Linear(config.width, config.patch * coordinates)
-        nn.init.normal_(self.out.weight, std=0.01)
-        nn.init.zeros_(self.out.bias)
+        self.start = nn.Linear(config.width, 2 * coordinates)
+        self.turn = nn.Linear(config.width, coordinates)
+        self.keep = nn.Linear(config.width, 1)
+        for layer in (self.start, self.turn):
+            nn.init.normal_(layer.weight, std=0.01)
+            nn.init.zeros_(layer.bias)
 
     def forward(self, seen: torch.Tensor, z: torch.Tensor) -> torch.Tensor:
         """(B, seen, J, 3) in metres, (B, Z) standard normal -> (B, future, J, 3) in metres."""
@@ -72,18 +81,26 @@ class Generator(nn.Module):
         states = [
             state + chance(z) for state, chance in zip(last.unbind(0), self.chance, strict=True)
         ]
-        said, pose = moments[:, -1], seen[:, -1:].flatten(2)
+        patch = self.config.patch
+        said, pose = moments[:, -1], seen[:, -1].flatten(1)
+        step = (pose - seen[:, -1 - STEADY_FRAMES].flatten(1)) * (STEP_SCALE / STEADY_FRAMES)
+        # Sensors shake: where the body is, and how fast it goes, is set right first.
+        off, faster = self.start(last[-1]).chunk(2, dim=1)
+        pose, step = pose + off / POSITION_SCALE, step + faster
+        ramp = torch.arange(1, patch + 1, device=seen.device)[:, None] / patch
         poses = []
-        for _ in range(self.config.future // self.config.patch):
+        for _ in range(self.config.future // patch):
             x = torch.tanh(self.embed(said))
             for layer, cell in enumerate(self.decoder):
                 x = states[layer] = cell(x, states[layer])
-            steps = self.out(x).unflatten(1, (self.config.patch, -1))  # (B, patch, 3 J)
-            poses.append(pose + torch.cumsum(steps, dim=1) / STEP_SCALE)
-            pose = poses[-1][:, -1:]
+            then = torch.sigmoid(self.keep(x)) * step + self.turn(x)
+            steps = torch.lerp(step[:, None], then[:, None], ramp)  # (B, patch, 3 J)
+            poses.append(pose[:, None] + torch.cumsum(steps, dim=1) / STEP_SCALE)
+            pose, step = poses[-1][:, -1], then
             said = torch.cat([poses[-1] * POSITION_SCALE, steps], dim=2).flatten(1)
-        future: torch.Tensor = torch.cat(poses, dim=1).unflatten(2, (-1, 3))
-        return future
+        future = torch.cat(poses, dim=1).unflatten(2, (-1, 3))
+        lengths = bone_lengths(seen, CORE_BONES).mean(dim=1, keepdim=True)
+        return with_lengths(future, lengths, CORE_BONES)
 
     def futures(self, seen: torch.Tensor, count: int, generator: torch.Generator) -> torch.Tensor:
         """Several futures of one past: (B, seen, J, 3) -> (B, count, future, J, 3)."""

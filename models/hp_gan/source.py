@@ -98,10 +98,13 @@ def server_source(data: Path, cache: Path, sequences: int) -> NamedSource:
             Part(cut(synthetic_split(cache, "train", sequences)), SYNTHETIC_SHARE),
             Part(cut(cmu_split(data, "train")), 1 - SYNTHETIC_SHARE, reverse=True),
         ),
-        {
-            "synthetic": named_windows(
-                cut(synthetic_split(cache, "validation"), VALIDATION_STRIDE)
-            ),
-            "cmu": named_windows(cut(cmu_split(data, "validation"), VALIDATION_STRIDE)),
-        },
+        server_validation(data, cache),
     )
+
+
+def server_validation(data: Path, cache: Path) -> dict[str, Named]:
+    """Windows of other virtual people and of other recordings of CMU's, by name."""
+    return {
+        "synthetic": named_windows(cut(synthetic_split(cache, "validation"), VALIDATION_STRIDE)),
+        "cmu": named_windows(cut(cmu_split(data, "validation"), VALIDATION_STRIDE)),
+    }

@@ -10,7 +10,7 @@ import torch.nn.functional as F
 from models.data.windows import AMBIGUOUS
 from models.hp_gan.config import NetworkConfig, TrainConfig
 from models.hp_gan.discriminator import Discriminator, whole_features
-from models.hp_gan.judge import Judge
+from models.hp_gan.judge import JUDGED_REAL, Judge
 from models.hp_gan.losses import diversity, nearest, physical_terms
 from models.hp_gan.network import Generator
 from models.hp_gan.source import Named, NamedSource, server_source
@@ -23,7 +23,6 @@ from models.training.updater import Updater
 LARGEST_GRADIENT = 1.0
 DRAWS = 4
 """Futures of each validation window."""
-JUDGED_REAL = 0.5
 MM = 1000.0
 
 

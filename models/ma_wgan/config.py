@@ -183,7 +183,7 @@ PAPER = TrainConfig(
 CONFIGS: dict[str, TrainConfig] = {
     "server": SERVER,
     "server_noise": replace(
-        SERVER, network=replace(SERVER.network, noise=16), steps=300, batch=64, validate_every=100
+        SERVER, network=replace(SERVER.network, noise=16), steps=2_000, batch=64, validate_every=100
     ),
     "best": BEST,
     "best_plain": replace(

@@ -9,7 +9,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="needs the train extra")
 
-from agent_server.domain.skeleton import CoreJoint  # noqa: E402
+from agent_server.domain.skeleton import CORE_BONES, CoreJoint  # noqa: E402
 from agent_server.errors import ConfigError  # noqa: E402
 from models.data.windows import AMBIGUOUS, Augmentation, Recording, Stretch, WindowSet, cut  # noqa: E402
 from models.evaluation.sampled import trained_sampler  # noqa: E402
@@ -19,9 +19,17 @@ from models.hp_gan.discriminator import Discriminator, whole_features  # noqa: E
 from models.hp_gan.judge import Judge  # noqa: E402
 from models.hp_gan.losses import consistency, diversity, energy, nearest  # noqa: E402
 from models.hp_gan.network import Generator, motion_features  # noqa: E402
-from models.hp_gan.sampler import DRAWS, Sampler  # noqa: E402
+from models.hp_gan.sampler import (  # noqa: E402
+    CANDIDATES,
+    DRAWS,
+    LIKELY,
+    Sampler,
+    likely_vectors,
+    random_vectors,
+)
 from models.hp_gan.source import Named, NamedSource, Part, named_windows  # noqa: E402
 from models.hp_gan.train import HpGanLearner, load_hp_gan, train_on  # noqa: E402
+from models.ops.losses import bone_lengths  # noqa: E402
 from models.training.run import Run  # noqa: E402
 
 SMALL = NetworkConfig(noise=8, width=16, critic_width=16, judge_width=8)
@@ -83,6 +91,23 @@ def test_other_chance_gives_another_future_and_the_same_chance_the_same(
     assert one.shape == (4, 50, 9, 3)
     assert torch.equal(one, again)
     assert (one - other).abs().max() > 1e-4
+
+
+def test_bones_keep_the_lengths_that_they_had(generator: Generator) -> None:
+    past = seen()
+    lengths = bone_lengths(past, CORE_BONES).mean(dim=1, keepdim=True)
+    future = bone_lengths(generator(past, z(4)), CORE_BONES)
+    torch.testing.assert_close(future, lengths.expand_as(future), atol=1e-4, rtol=0)
+
+
+def test_a_future_goes_on_at_the_speed_at_which_the_past_has_ended(generator: Generator) -> None:
+    for layer in (generator.start, generator.turn):
+        torch.nn.init.zeros_(layer.weight)
+    torch.nn.init.constant_(generator.keep.bias, 20.0)
+    walk = torch.arange(75.0).view(1, 75, 1, 1) * torch.tensor([0.0, 0.0, 0.01])
+    motion = torch.from_numpy(POSE) + walk
+    future = generator(motion[:, :25], z(1))
+    torch.testing.assert_close(future, motion[:, 25:], atol=2e-3, rtol=0)
 
 
 def test_chance_enters_every_layer(generator: Generator) -> None:
@@ -237,7 +262,7 @@ def test_the_bundle_draws_what_torch_draws_always_the_same(tmp_path: Path) -> No
     torch.manual_seed(0)
     short = replace(SMALL, patch=25, layers=1)  # few steps are quick to export
     generator = Generator(short).eval()
-    network = Sampler(generator, SMALL.noise, Judge(short)).eval()
+    network = Sampler(generator, Judge(short), random_vectors(SMALL.noise)).eval()
     given = seen(20).contiguous().numpy()
     assert write_sampler(network, given, tmp_path) < 1e-4
     with np.load(tmp_path / "golden.npz") as golden:
@@ -248,9 +273,29 @@ def test_the_bundle_draws_what_torch_draws_always_the_same(tmp_path: Path) -> No
             drawn = draw(golden["seen"][row : row + 1], row + 1)
             np.testing.assert_allclose(drawn.futures[0, row], golden["future"][row], atol=1e-4)
             np.testing.assert_allclose(drawn.quality[0, row], golden["quality"][row], atol=1e-4)
-    again = Sampler(generator, SMALL.noise, network.judge)
-    assert torch.equal(again.table, network.table)
-    assert network.table.shape == (DRAWS, SMALL.noise)
+
+
+class Swayed(torch.nn.Module):
+    """Moves nobody, or everybody by as many metres as the first random number is above 0.5."""
+
+    def forward(self, seen: torch.Tensor, z: torch.Tensor) -> torch.Tensor:
+        return seen[:, -1:] + torch.relu(z[:, 0] - 0.5).view(-1, 1, 1, 1)
+
+
+class Strict:
+    """Holds for real what stays where it was."""
+
+    def quality(self, seen: torch.Tensor, future: torch.Tensor) -> torch.Tensor:
+        return ((future[:, -1] - seen[:, -1]).abs().amax(dim=(1, 2)) < 0.01).float()
+
+
+def test_random_vectors_that_throw_bodies_about_are_left_out() -> None:
+    candidates = random_vectors(SMALL.noise, CANDIDATES)
+    assert (candidates[:DRAWS, 0] > 0.51).any()
+    chosen = likely_vectors(Swayed(), SMALL.noise, Strict(), [seen(), seen(1)])
+    calm = candidates[candidates[:, 0] < 0.51]
+    assert len(calm) > LIKELY
+    torch.testing.assert_close(chosen, calm[:DRAWS])
 
 
 def test_skips_and_both_heads_of_the_discriminator_see_the_whole_motion() -> None:

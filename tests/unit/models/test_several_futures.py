@@ -16,7 +16,7 @@ from models.evaluation.sampled import Drawn, drawn_figures, trained_sampler  # n
 from models.evaluation.several import COUNTS, Futures, read_futures  # noqa: E402
 from models.hp_gan.config import NetworkConfig  # noqa: E402
 from models.hp_gan.judge import Judge  # noqa: E402
-from models.hp_gan.sampler import Sampler  # noqa: E402
+from models.hp_gan.sampler import Sampler, random_vectors  # noqa: E402
 from models.ma_wgan.config import NetworkConfig as MaWganConfig  # noqa: E402
 from models.ma_wgan.network import Predictor  # noqa: E402
 
@@ -93,7 +93,9 @@ def test_a_manifold_aware_gan_with_noise_draws_too() -> None:
     config = MaWganConfig(output="curve", noise=4, channels=8, blocks=1)
     reference = torch.nn.functional.normalize(torch.randn(9, 150), dim=1)
     judge = Judge(NetworkConfig(judge_width=8))
-    draw = trained_sampler(Sampler(Predictor(config, reference).eval(), 4, judge).eval())
+    draw = trained_sampler(
+        Sampler(Predictor(config, reference).eval(), judge, random_vectors(4)).eval()
+    )
     seen = 0.1 * np.random.default_rng(0).standard_normal((2, 25, 9, 3)).astype(np.float32)
     drawn = draw(seen, 3)
     assert drawn.futures.shape == (2, 3, 50, 9, 3)
