@@ -66,6 +66,12 @@ async def test_a_pleased_face_is_explained_on_the_page():
         assert state["command"] is None
         assert not state["gateOpen"]
         assert "pleased" in await page.inner_text("body")
+        await until(page, lambda s: s["gesture"])
+        await page.get_by_role("button", name="Enlarge").click()
+        gesture = await page.locator("#spoken").bounding_box()
+        sound = await page.get_by_role("button", name="Sound").bounding_box()
+        assert gesture["width"] > 20
+        assert gesture["x"] + gesture["width"] < sound["x"], "one hides the other"
         sending.cancel()
 
 
