@@ -157,6 +157,7 @@ async def test_one_that_says_goodbye_leaves_the_room_to_itself_at_once():
             await gesture(server)
             command = await next_of(renderer, m.CommandMessage)
         await until(lambda: ends.get(command.id) == "assumed", within_s=12)
+        assert server.hub.sessions["s"].delivery.scene().objects["hifi"] == "low"
 
 
 async def test_a_connection_takes_the_place_of_an_earlier_one_of_the_same_client():

@@ -59,9 +59,8 @@ def test_components_live_through_a_session():
 
 @needs_mono
 def test_a_webgl_build_compiles():
-    compiled(
-        "AgentServer.Unity.WebGL.dll", sources(UNITY), (core(), engine()[0]), "-define:UNITY_WEBGL"
-    )
+    name, references = "AgentServer.Unity.WebGL.dll", (core(), engine()[0])
+    assert compiled(name, sources(UNITY), references, "-define:UNITY_WEBGL").is_file()
 
 
 @needs_mono
@@ -69,14 +68,16 @@ def test_the_samples_compile():
     kinect = compiled("Kinect.dll", sources(HERE / "stubs/Kinect"))
     references = (core(), unity(), engine()[0])
     for sample in ("Minimal", "Room", "Headset"):
-        compiled(f"AgentServer.Samples.{sample}.dll", sources(SAMPLES / sample), references)
-    compiled(
+        name = f"AgentServer.Samples.{sample}.dll"
+        assert compiled(name, sources(SAMPLES / sample), references).is_file()
+    cameras = compiled(
         "AgentServer.Samples.Cameras.dll",
         sources(SAMPLES / "Headset"),
         (*references, kinect),
         "-define:AGENT_SERVER_KINECT_V2",
         "-define:AGENT_SERVER_AZURE_KINECT",
     )
+    assert cameras.is_file()
 
 
 def test_the_golden_poses_are_those_of_the_server():

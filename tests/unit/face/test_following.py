@@ -104,7 +104,9 @@ def test_depth_is_in_pixels_and_smaller_towards_the_camera(tracker, painted):
 )
 def test_landmarks_follow_a_moved_turned_and_scaled_face(tracker, painted, degrees, scale, to):
     image, _ = painted(eyes=80)
-    _follows(tracker, image, similarity(degrees, scale, (320, 240), to))
+    flat, deep = _off(tracker, image, similarity(degrees, scale, (320, 240), to))
+    assert flat < 0.035
+    assert deep < 0.1
 
 
 @needs_faces
@@ -115,20 +117,22 @@ def test_landmarks_follow_a_moved_turned_and_scaled_face(tracker, painted, degre
 def test_landmarks_follow_real_faces(tracker, degrees, scale, to):
     for file in labelled(4):
         image = framed(picture(file, 240))
-        _follows(tracker, image, similarity(degrees, scale, (320, 240), to))
+        flat, deep = _off(tracker, image, similarity(degrees, scale, (320, 240), to))
+        assert flat < 0.035
+        assert deep < 0.1
 
 
-def _follows(tracker, image, change):
+def _off(tracker, image, change):
+    """How far points and depths are from where a change puts them, in distances of the eyes."""
     tracker.reset()
     before = settled(tracker, image).points
     moved = cv2.warpAffine(image, change, (640, 480), borderValue=(90, 90, 90))
     tracker.reset()
     after = settled(tracker, moved).points
     expected = before[:, :2] @ change[:, :2].T + change[:, 2]
-    assert error(after, expected) < 0.035
     scale = np.sqrt(np.linalg.det(change[:, :2]))
     eyes = np.linalg.norm(expected[LEFT_OUTER] - expected[RIGHT_OUTER])
-    assert np.abs(after[:, 2] - scale * before[:, 2]).mean() / eyes < 0.1
+    return error(after, expected), np.abs(after[:, 2] - scale * before[:, 2]).mean() / eyes
 
 
 @needs_faces

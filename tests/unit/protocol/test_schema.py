@@ -51,7 +51,7 @@ def test_every_good_message_is_valid_by_the_schema(entry):
     validator = jsonschema.Draft202012Validator(
         {"$ref": f"#/$defs/{entry['record']}", "$defs": schema["$defs"]}
     )
-    validator.validate(json.loads(entry["json"]))
+    assert list(validator.iter_errors(json.loads(entry["json"]))) == []
 
 
 def test_the_schema_refuses_what_the_codec_refuses():
