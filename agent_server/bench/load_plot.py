@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from agent_server.bench.load import BOUND_MS, LoadResult
 
 WIDTH, HEIGHT = 720, 596
-LEFT, RIGHT, TOP, GAP = 64, 24, 70, 66
+LEFT, RIGHT, TOP, GAP, BOTTOM = 64, 24, 70, 66, 64
 MOST_OF_BOUND = 3
 """A panel with a bound ends at this many times of it; what lies beyond stands at its top edge."""
 COLOURS = {"uvicorn": "#2563eb", "websockets": "#d97706"}
@@ -18,7 +18,7 @@ def load_plot(runs: Mapping[str, Sequence[LoadResult]]) -> str:
         runs: What carried the websockets -> its runs, by their sessions.
     """
     most = max(run.sessions for some in runs.values() for run in some)
-    height = (HEIGHT - TOP - GAP) / 2 - 32
+    height = (HEIGHT - TOP - GAP - BOTTOM) / 2
     parts = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" '
         'font-family="system-ui, sans-serif" font-size="13" fill="#334155">',

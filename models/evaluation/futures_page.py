@@ -22,8 +22,9 @@ from models.evaluation.figures.futures import (
 from models.evaluation.futures_losses import losses_report
 from models.evaluation.gestures import Classify, Predict
 from models.evaluation.page import plot_section, write_page
-from models.evaluation.sampled import GOOD, Draw, drawn_figures, trained_sampler
+from models.evaluation.sampled import Draw, drawn_figures, trained_sampler
 from models.evaluation.several import live_takes, real_gestures, several_report
+from models.hp_gan.judge import JUDGED_REAL
 from models.hp_gan.sampler import Sampler, random_vectors
 from models.hp_gan.train import load_hp_gan
 from models.ma_wgan.config import CONFIGS
@@ -77,7 +78,7 @@ def futures_report(
         "sampler": {
             name: {
                 **drawn_figures(drawn[name], seen, true),
-                "real_plausible": round(float((real[name] > GOOD).mean()), 4),
+                "real_plausible": round(float((real[name] > JUDGED_REAL).mean()), 4),
             }
             for name, (seen, true) in held.items()
         },

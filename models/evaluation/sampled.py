@@ -11,12 +11,11 @@ import torch
 from agent_server.domain.arrays import Float32
 from agent_server.errors import BundleError
 from agent_server.inference.manifest import MODEL_FILE, read_manifest
+from models.hp_gan.judge import JUDGED_REAL
 from models.hp_gan.sampler import Sampler
 from models.ops.session import open_session
 
 MM = 1000.0
-GOOD = 0.5
-"""A future that is more probably real than this counts as plausible."""
 CHUNK = 256
 
 
@@ -115,7 +114,7 @@ def drawn_figures(drawn: Drawn, seen: Float32, true: Float32) -> dict[str, float
         "true_jump_mm": _mm(true_seams[0]),
         "seam_mm": _mm(seams[1]),
         "true_seam_mm": _mm(true_seams[1]),
-        "plausible": round(float((drawn.quality > GOOD).mean()), 4),
+        "plausible": round(float((drawn.quality > JUDGED_REAL).mean()), 4),
     }
 
 

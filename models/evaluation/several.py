@@ -18,8 +18,9 @@ from models.data.msrc12 import TaggedStream
 from models.data.windows import AMBIGUOUS, Recording, Stretch, whole_labels, window_labels
 from models.evaluation.decision_times import LiveStream, answers
 from models.evaluation.gestures import Classify, Predict, calibration_error, sliding_seen
-from models.evaluation.sampled import GOOD, Draw
+from models.evaluation.sampled import Draw
 from models.evaluation.sim2real import known_windows
+from models.hp_gan.judge import JUDGED_REAL
 
 COUNTS = (1, 5, 10)
 """How many futures are compared."""
@@ -118,7 +119,7 @@ def read_futures(classify: Classify, predict: Predict, draw: Draw, seen: Float32
     past = seen.repeat(count, axis=0)
     motion = np.concatenate([past, drawn.futures.reshape(len(past), -1, *seen.shape[2:])], axis=1)
     rows = classify(motion).reshape(len(seen), count, -1)
-    return Futures(expected, rows, drawn.quality >= GOOD)
+    return Futures(expected, rows, drawn.quality >= JUDGED_REAL)
 
 
 def several_report(

@@ -20,7 +20,6 @@ from agent_server.inference.manifest import (
 from models.evaluation.latency import percentiles_ms
 from models.evaluation.protocols import protocol_named
 from models.evaluation.sampled import (
-    GOOD,
     bundled_session,
     drawn_figures,
     trained_sampler,
@@ -29,6 +28,7 @@ from models.export.bundle import GOLDEN_ROWS, LICENCE, SERVER_SOURCES
 from models.export.card import sampler_card
 from models.export.onnx import OPSET, require_close, write_graph
 from models.export.publish import publish, training_of
+from models.hp_gan.judge import JUDGED_REAL
 from models.hp_gan.sampler import DRAWS, Sampler, likely_vectors
 from models.hp_gan.source import server_validation
 from models.hp_gan.train import load_hp_gan
@@ -161,5 +161,5 @@ def _figures(network: Sampler, motion: Float32) -> dict[str, Any]:
     drawn = trained_sampler(network)(seen, MEASURED_DRAWS)
     with torch.no_grad():
         real = network.judge.quality(torch.from_numpy(seen), torch.from_numpy(true))
-    share = round(float((real > GOOD).float().mean()), 4)
+    share = round(float((real > JUDGED_REAL).float().mean()), 4)
     return {**drawn_figures(drawn, seen, true), "real_plausible": share}
