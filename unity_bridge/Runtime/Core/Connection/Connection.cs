@@ -123,7 +123,7 @@ namespace AgentServer
 
         /// <summary>Says goodbye and stays away.</summary>
         /// <param name="waitMs">
-        /// How long to wait, at most, until the goodbye is said: for a process that ends now.
+        /// How long to wait, at most, until the goodbye is said and answered: for a process that ends now.
         /// </param>
         public void Stop(int waitMs = 0)
         {

@@ -23,7 +23,7 @@ namespace AgentServer
 
         readonly ClientWebSocket _socket = new ClientWebSocket();
         readonly CancellationTokenSource _cancel = new CancellationTokenSource();
-        readonly ManualResetEventSlim _closed = new ManualResetEventSlim();
+        readonly ManualResetEventSlim _ended = new ManualResetEventSlim();
         readonly object _lock = new object();
         readonly Queue<Frame> _queue = new Queue<Frame>();
         ITransportListener _listener;
@@ -73,11 +73,20 @@ namespace AgentServer
                 _closeReason = reason;
                 if (!_isSending) BeginSending();
             }
-            _cancel.CancelAfter(GoodbyeMs);
+            new Thread(EndInTime) { IsBackground = true }.Start();
         }
 
         /// <inheritdoc/>
-        public bool WaitClosed(int milliseconds) => _closed.Wait(milliseconds);
+        public bool WaitClosed(int milliseconds) => _ended.Wait(milliseconds);
+
+        /// <summary>
+        /// Gives up waiting for an answer to the goodbye. A thread, not a timer: a process that ends
+        /// while the runtime puts a timer in its place is aborted on Mono.
+        /// </summary>
+        void EndInTime()
+        {
+            if (!_ended.Wait(GoodbyeMs)) _cancel.Cancel();
+        }
 
         async Task Run(string url)
         {
@@ -108,6 +117,7 @@ namespace AgentServer
             lock (_lock) sending = _sending;
             await sending.ConfigureAwait(false);
             _socket.Dispose();
+            _ended.Set();
         }
 
         async Task Read()
@@ -187,7 +197,6 @@ namespace AgentServer
                 // The reading side ends by this, and says so.
                 _cancel.Cancel();
             }
-            _closed.Set();
         }
 
         bool Next(out Frame frame, out bool isGoodbye)

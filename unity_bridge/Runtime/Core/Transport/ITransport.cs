@@ -24,7 +24,10 @@ namespace AgentServer
         /// <summary>Closes it after what waits was sent; returns at once. More than once does no harm.</summary>
         void Close(int code, string reason);
 
-        /// <summary>Waits until a close has been said, for so long at most; true if it has.</summary>
+        /// <summary>
+        /// Waits until a close has been said and, where that can be known, answered, for so long at most;
+        /// true if it has.
+        /// </summary>
         bool WaitClosed(int milliseconds);
     }
 
