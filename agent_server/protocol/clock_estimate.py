@@ -56,7 +56,7 @@ class ClockEstimate:
             self._begin(sample)
             return None
         away_ns = sample.offset_ns - self.offset_ns
-        if abs(away_ns) <= TOLERANCE_NS + round_trip_ns // 2:
+        if abs(away_ns) <= TOLERANCE_NS + round_trip_ns // 2 + self._off_by_ns:
             self._outliers = 0
             self._follow(sample)
             return None
@@ -68,6 +68,11 @@ class ClockEstimate:
         self.jumps += 1
         self._begin(sample)
         return away_ns
+
+    @property
+    def _off_by_ns(self) -> int:
+        """How far the estimate may be off, by the sample that it goes by."""
+        return 0 if self.round_trip_ns is None else self.round_trip_ns // 2
 
     @property
     def drift_ns(self) -> int:
@@ -85,5 +90,7 @@ class ClockEstimate:
         self._samples.append(sample)
         best = min(self._samples, key=lambda one: one.round_trip_ns)
         assert self.offset_ns is not None  # noqa: S101 - samples follow a first one
-        self.offset_ns += (best.offset_ns - self.offset_ns) // GAIN
         self.round_trip_ns = best.round_trip_ns
+        followed_ns = self.offset_ns + (best.offset_ns - self.offset_ns) // GAIN
+        lowest_ns, highest_ns = best.offset_ns - self._off_by_ns, best.offset_ns + self._off_by_ns
+        self.offset_ns = min(max(followed_ns, lowest_ns), highest_ns)

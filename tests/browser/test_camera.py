@@ -18,6 +18,7 @@ from agent_server.service.loading import load_models
 from tests.browser.test_page import COLD
 from tests.support.browser import browsing, needs_browser, until
 from tests.support.live import live
+from tests.support.patience import patience
 from tests.support.pictures import framed, jpeg, labelled, needs_faces, picture
 
 pytestmark = [*needs_browser]
@@ -56,16 +57,16 @@ async def words(page):
     return await page.inner_text("#camera")
 
 
-async def switched_on(page, condition, within_s=60.0):
+async def switched_on(page, condition):
     """Switch the camera on and wait until its state fits."""
     await until(page, lambda s: s["connection"]["phase"] == "live")
     await page.click("text=Use my camera")
-    return await camera_state(page, condition, within_s)
+    return await camera_state(page, condition)
 
 
-async def camera_state(page, condition, within_s=20.0):
+async def camera_state(page, condition):
     """Wait until the camera's state fits."""
-    async with asyncio.timeout(within_s):
+    async with patience():
         while not condition(  # noqa: ASYNC110 - the page announces nothing
             state := await page.evaluate("window.agentPage.camera()")
         ):
@@ -153,7 +154,6 @@ async def test_a_gesture_counts_only_with_the_face_to_it(film, levels, outcome):
             state = await until(
                 page,
                 lambda s: any(row["outcome"] == outcome for row in s["log"]),
-                within_s=40.0,
             )
             sending.cancel()
         row = next(row for row in state["log"] if row["outcome"] == outcome)
@@ -222,7 +222,7 @@ async def test_another_sensors_face_is_not_pushed_aside_unasked(film):
         assert "Another sensor sends" in await words(page)
         await page.click("text=Send mine instead")
         state = await until(
-            page, lambda s: s["affect"] is not None and s["affect"]["valence"] > 1.5, within_s=60
+            page, lambda s: s["affect"] is not None and s["affect"]["valence"] > 1.5
         )
         assert state["affect"]["arousal"] > 0
 

@@ -28,9 +28,7 @@ async def test_the_page_shows_what_the_agent_makes_of_a_person():
             events = open_recording(COLD).events()
             sending = asyncio.create_task(send_paced(sensor, events, SPEED))
             # Room and decision come in messages of their own, in any order.
-            state = await until(
-                page, lambda s: s["mode"] == "reacting" and s["gesture"] == "cold", within_s=30
-            )
+            state = await until(page, lambda s: s["mode"] == "reacting" and s["gesture"] == "cold")
             assert state["command"]
             assert state["gateOpen"]
             assert state["affect"]["valence"] < -3

@@ -16,6 +16,7 @@ from agent_server.recording.reader import open_recording
 from agent_server.service.loading import load_models
 from tests.support.browser import browsing, needs_browser, until
 from tests.support.live import live
+from tests.support.patience import patience
 
 pytestmark = needs_browser
 STREAMS = Path(__file__).parents[2] / "recorded_streams"
@@ -24,8 +25,6 @@ LEAD_NS = 3_000_000_000
 STEP_MS = 50
 LONGEST_STEP_MS = 200
 PATIENT_TRIES = 3
-PATIENCE_S = 120
-"""Software draws a few pictures a second."""
 ACTIVITIES = {"command", "nothing_to_do", "gated", "busy"}
 
 
@@ -41,7 +40,7 @@ async def room(**options):
 
 async def enter(page):
     """Wait until the agent is there and acts."""
-    return await until(page, lambda state: state["room"]["part"] == "acting", PATIENCE_S)
+    return await until(page, lambda state: state["room"]["part"] == "acting")
 
 
 @asynccontextmanager
@@ -64,7 +63,7 @@ async def playing(server, gesture, stream=None):
 async def watch(page, is_over, *, moves=True):
     """Let the agent move until ``is_over`` of its state; gives the states on the way."""
     states, before_s = [], time.monotonic()
-    async with asyncio.timeout(PATIENCE_S):
+    async with patience():
         while not states or not is_over(states[-1]):
             # A slow machine must not make a slow agent, which the server would give up.
             now_s = time.monotonic()
@@ -274,7 +273,7 @@ async def test_a_renderer_of_ones_own_takes_over_and_the_page_follows_it():
         async with Renderer(Options(server.url, "s")) as mine, httpx.AsyncClient() as http:
             await watch(page, lambda state: state["room"]["part"] == "watching")
             await page.click("#play >> text=Loud")
-            async with asyncio.timeout(PATIENCE_S):
+            async with patience():
                 async for event in mine:
                     if isinstance(event, m.CommandMessage):
                         break

@@ -19,6 +19,7 @@ from agent_server.service.loading import load_models
 from agent_server.service.recorder import recorder
 from agent_server.synthetic.face import SyntheticFace
 from tests.support.live import live, next_of
+from tests.support.patience import until
 from tests.support.pictures import framed, jpeg, labelled, needs_faces, picture
 
 S = 1_000_000_000
@@ -46,13 +47,6 @@ def faces(kind, valence, arousal, count=12, start=0):
     person = SyntheticFace(np.random.default_rng(3))
     stamps = range(start, start + count * STEP, STEP)
     return [person.show(AffectSample(at, valence, arousal), kind) for at in stamps]
-
-
-async def until(condition):
-    """Wait for something that nobody announces."""
-    async with asyncio.timeout(5):
-        while not condition():  # noqa: ASYNC110 - counters have no events
-            await asyncio.sleep(0.01)
 
 
 async def last_affect(sensor, monitor, values):

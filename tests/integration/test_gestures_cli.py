@@ -15,6 +15,7 @@ from agent_server.client.once import ConnectionFailed, join, send_paced
 from agent_server.recording.reader import open_recording
 from agent_server.synthetic.scenario import Part, Scenario, play
 from agent_server.synthetic.sensors import KINECT_V2
+from tests.support.patience import PATIENCE_S, patience
 
 NS = 1_000_000_000
 SPEED = 10.0
@@ -39,7 +40,7 @@ async def recording(tmp_path, *options):
     pipe = asyncio.subprocess.PIPE
     process = await asyncio.create_subprocess_exec(*line, stdout=pipe, stderr=pipe)
     try:
-        said = (await asyncio.wait_for(process.stderr.readline(), 30)).decode()
+        said = (await asyncio.wait_for(process.stderr.readline(), PATIENCE_S)).decode()
         yield process, re.search(r"ws://[0-9.:]+", said)[0]
     finally:
         if process.returncode is None:
@@ -49,7 +50,7 @@ async def recording(tmp_path, *options):
 
 async def ended(process):
     """Exit status, what was printed, and what was said."""
-    out, err = await asyncio.wait_for(process.communicate(), 30)
+    out, err = await asyncio.wait_for(process.communicate(), PATIENCE_S)
     return process.returncode, out.decode(), err.decode()
 
 
@@ -111,7 +112,7 @@ async def test_a_sensor_that_goes_in_mid_repetition_may_come_back(tmp_path):
     until = [event for event in shown.events if event.originating_ns < 6 * NS]
     async with recording(tmp_path, "--repetitions", "1") as (process, url):
         await send(url, until)
-        async with asyncio.timeout(10):
+        async with patience():
             while "did not count" not in (await process.stderr.readline()).decode():
                 pass
         await send(url, shown.events)

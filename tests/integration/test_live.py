@@ -290,7 +290,7 @@ async def test_a_body_that_leaves_ends_attention_even_when_nothing_comes_any_mor
         await send_paced(sensor, GESTURE, 20.0)
         resumed = await next_of(monitor, m.CommandMessage)
         while resumed.reaction != "resume_work":
-            resumed = await next_of(monitor, m.CommandMessage, within_s=15)
+            resumed = await next_of(monitor, m.CommandMessage)
         assert resumed.cause == "body_lost"
         assert server.hub.sessions["s"].counters["bodies_lost"] == 1
 
@@ -316,9 +316,9 @@ async def test_a_renderer_without_a_picture_carries_commands_out():
         running = asyncio.create_task(renderer.run())
         await send_paced(sensor, GESTURE, 20.0)
         command = await next_of(monitor, m.CommandMessage)
-        done = await next_of(monitor, m.AckTelemetry, within_s=20)
+        done = await next_of(monitor, m.AckTelemetry)
         while done.status != "done":
-            done = await next_of(monitor, m.AckTelemetry, within_s=20)
+            done = await next_of(monitor, m.AckTelemetry)
         assert (done.command_id, command.reaction) == ("s/c1", "turn_down_hifi")
         while (await next_of(monitor, m.SceneState)).objects["hifi"] != "low":
             pass

@@ -25,6 +25,7 @@ from agent_server.service.replay import log_line, replay
 from tests.support.bodies import frame, stream
 from tests.support.live import all_decisions, live
 from tests.support.models import fake_models
+from tests.support.patience import until
 
 SETTINGS = Settings(gate=GateSettings(mode="optional"))
 
@@ -83,9 +84,7 @@ async def test_live_over_a_websocket_equals_the_replay_of_the_same_recording(tmp
         decisions = []
         listening = asyncio.create_task(all_decisions(monitor, decisions))
         await send_in_step(server, sensor, open_recording(path).events())
-        async with asyncio.timeout(5):
-            while len(decisions) < len(offline):  # noqa: ASYNC110 - it has no event
-                await asyncio.sleep(0.01)
+        await until(lambda: len(decisions) >= len(offline))
         listening.cancel()
     assert lines(decisions) == offline
 
@@ -94,9 +93,7 @@ async def send_in_step(server, sensor, events):
     """Send each input when the one before has had its decision: no window is left out."""
     for sent, event in enumerate(events, start=1):
         await sensor.send(input_to_message(event))
-        async with asyncio.timeout(5):
-            while not has_dealt_with(server.hub.sessions["s"].counters, sent):  # noqa: ASYNC110
-                await asyncio.sleep(0.001)
+        await until(lambda sent=sent: has_dealt_with(server.hub.sessions["s"].counters, sent))
 
 
 def has_dealt_with(counters, sent):

@@ -18,6 +18,7 @@ from agent_server.transports.server import build_hub
 from tests.support.bodies import stream
 from tests.support.live import live, next_of
 from tests.support.models import fake_models
+from tests.support.patience import PATIENCE_S, until
 
 GESTURE = stream(6, hands_up=lambda t: 2 <= t < 4)
 OBJECTS = {"window": "open", "hifi": "high", "cigarette": "lit", "curtain": "open"}
@@ -41,7 +42,7 @@ async def gesture(server):
             await asyncio.sleep(0.001)
 
 
-async def event_of(events, kind, within_s=5.0):
+async def event_of(events, kind, within_s=PATIENCE_S):
     """The next event of a kind; others are passed over."""
     async with asyncio.timeout(within_s):
         async for event in events:
@@ -75,12 +76,6 @@ async def ends_of(server):
         task.cancel()
         with suppress(asyncio.CancelledError):
             await task
-
-
-async def until(condition, within_s=5.0):
-    async with asyncio.timeout(within_s):
-        while not condition():  # noqa: ASYNC110 - a test looks from outside
-            await asyncio.sleep(0.01)
 
 
 async def test_a_renderer_that_was_cut_off_gets_what_is_not_over_and_does_it_once():
@@ -134,7 +129,7 @@ async def test_a_command_that_nobody_starts_in_time_expires_and_is_not_sent_agai
         await gesture(server)
         command = await next_of(renderer, m.CommandMessage)
         renderer._socket.transport.abort()
-        await until(lambda: ends.get(command.id) == "expired", within_s=10)
+        await until(lambda: ends.get(command.id) == "expired")
         async with server.join("renderer", hello=raw_hello(ledger="x")) as late:
             assert late.welcome.scene.objects == OBJECTS
             assert late.welcome.scene.command_id != command.id
@@ -147,7 +142,7 @@ async def test_a_renderer_keeps_its_seat_for_a_while_and_then_the_room_goes_on_b
             command = await next_of(renderer, m.CommandMessage)
             await renderer.send(m.AckMessage(command.id, "started"))
             renderer._socket.transport.abort()
-        await until(lambda: ends.get(command.id) == "assumed", within_s=12)
+        await until(lambda: ends.get(command.id) == "assumed")
         assert server.hub.sessions["s"].delivery.scene().objects["hifi"] == "low"
 
 
@@ -156,7 +151,7 @@ async def test_one_that_says_goodbye_leaves_the_room_to_itself_at_once():
         async with server.join("renderer", hello=raw_hello()) as renderer:
             await gesture(server)
             command = await next_of(renderer, m.CommandMessage)
-        await until(lambda: ends.get(command.id) == "assumed", within_s=12)
+        await until(lambda: ends.get(command.id) == "assumed")
         assert server.hub.sessions["s"].delivery.scene().objects["hifi"] == "low"
 
 

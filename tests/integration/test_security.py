@@ -29,6 +29,7 @@ from agent_server.service.auth import ANYBODY, RIGHTS, Access, NotAdmitted, dige
 from agent_server.service.secrets import load_access, new_key, new_secret
 from agent_server.transports.server import check_exposure
 from tests.support.live import live
+from tests.support.patience import patience
 
 SECRET = "for tests alone, and long enough for it"  # noqa: S105
 KEY = "a key of an operator, long enough too"
@@ -95,7 +96,7 @@ async def test_a_client_that_is_sent_away_does_not_come_back_by_itself():
     async with live(access=ACCESS) as server:
         renderer = Renderer(Options(server.url, "s", "tester", token=SECRET))
         with pytest.raises(ConnectionFailed, match="not valid"):
-            async with asyncio.timeout(5):
+            async with patience():
                 await renderer.link.run()
 
 
@@ -103,7 +104,7 @@ async def test_a_token_that_expires_ends_the_visit():
     settings = Settings(server=ServerSettings(heartbeat_s=0.1))
     async with live(settings=settings, access=ACCESS) as server:
         hello = m.Hello(m.PROTOCOL, "tester", token=token(lifetime_s=1))
-        async with server.join("monitor", hello=hello) as client, asyncio.timeout(5):
+        async with server.join("monitor", hello=hello) as client, patience():
             with pytest.raises(ConnectionFailed, match=str(CLOSE_NOT_ADMITTED)):
                 async for _ in client:
                     pass
@@ -216,7 +217,7 @@ async def raw(url, *parts, gap_s=0.0):
         for part in parts:
             writer.write(part)
             await asyncio.sleep(gap_s)
-        async with asyncio.timeout(10):
+        async with patience():
             answer = await reader.read()
     except ConnectionError:
         answer = b""

@@ -8,6 +8,7 @@ from pathlib import Path
 from agent_server.client import Monitor, Options
 from agent_server.protocol import messages as m
 from tests.support.live import live
+from tests.support.patience import patience
 
 SENDER = Path(__file__).parents[2] / "examples" / "sender.py"
 
@@ -15,7 +16,7 @@ SENDER = Path(__file__).parents[2] / "examples" / "sender.py"
 async def poses(url, count):
     """So many poses that a monitor gets."""
     found = []
-    async with asyncio.timeout(20), Monitor(Options(url, "lab"), ["pose"]) as monitor:
+    async with patience(), Monitor(Options(url, "lab"), ["pose"]) as monitor:
         async for message in monitor:
             if isinstance(message, m.PoseMessage):
                 found.append(message)

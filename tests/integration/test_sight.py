@@ -24,6 +24,7 @@ from agent_server.transports.app import create_app
 from tests.support.bodies import stream
 from tests.support.live import live, next_of
 from tests.support.models import fake_models
+from tests.support.patience import patience, until
 
 UNGATED = Settings(gate=GateSettings(mode="off"))
 GESTURE = stream(4, hands_up=lambda t: t >= 1.5)
@@ -79,7 +80,7 @@ async def test_the_server_is_not_ready_before_it_is_warm():
         answer = await http.get("/readyz")
         assert (answer.status_code, answer.json()["ready"]) == (503, False)
         predictor.go_on.set()
-        async with asyncio.timeout(10):
+        async with patience():
             await hub.warm.wait()
         assert (await http.get("/readyz")).status_code == 200
         assert predictor.calls >= 1
@@ -129,9 +130,7 @@ async def test_what_a_session_counted_outlives_it():
     settings = msgspec.structs.replace(UNGATED, server=brief)
     async with live(settings=settings) as server:
         await perform(server)
-        async with asyncio.timeout(5):
-            while server.hub.sessions:  # noqa: ASYNC110 - sessions close by themselves
-                await asyncio.sleep(0.01)
+        await until(lambda: not server.hub.sessions)
         seen = await figures(server)
         assert seen[("agent_server_sessions",)] == 0
         assert seen[("agent_server_sessions_opened_total",)] == 1

@@ -37,6 +37,7 @@ from agent_server.service.recorder import recorder
 from agent_server.service.replay import replay
 from tests.support.bodies import stream
 from tests.support.live import live, next_of
+from tests.support.patience import patience, until
 
 REACTOR = Path(__file__).parents[2] / "models" / "benchmarks" / "interformer_sbu"
 SECRET = "for tests alone, and long enough for it"  # noqa: S105
@@ -67,9 +68,7 @@ async def send(sensor, seconds, start=0):
 
 
 async def logged(caplog, words):
-    async with asyncio.timeout(10):
-        while words not in caplog.text:  # noqa: ASYNC110 - a log has no events
-            await asyncio.sleep(0.02)
+    await until(lambda: words in caplog.text)
 
 
 async def names_of_next(monitor):
@@ -96,7 +95,7 @@ async def test_a_good_bundle_takes_over_and_no_session_notices(shipped, tmp_path
         assert answer.status_code == 200, answer.text
         assert "newer" in answer.json()["models"]
         await send(sensor, 2, start=60)
-        async with asyncio.timeout(5):
+        async with patience():
             while "newer" not in await names_of_next(monitor):
                 pass
         assert (await http.get("/readyz")).json()["models"] == answer.json()["models"]

@@ -7,6 +7,7 @@ from contextlib import asynccontextmanager
 import pytest
 
 from agent_server import assets
+from tests.support.patience import PATIENCE_S, patience
 
 playwright = pytest.importorskip("playwright.async_api", reason="playwright is not installed")
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
@@ -41,6 +42,7 @@ async def browsing(url, *flags, permissions=()):
         context = await browser.new_context(
             viewport={"width": 1280, "height": 720}, permissions=list(permissions)
         )
+        context.set_default_timeout(1000 * PATIENCE_S)
         page = await context.new_page()
         page.requested, page.complaints = [], []
         page.on("request", lambda request: page.requested.append(origin_of(request.url)))
@@ -52,9 +54,9 @@ async def browsing(url, *flags, permissions=()):
             await browser.close()
 
 
-async def until(page, condition, within_s=20.0):
+async def until(page, condition):
     """Step the page, without drawing, until its state fits ``condition``; gives that state."""
-    async with asyncio.timeout(within_s):
+    async with patience():
         while True:
             await page.evaluate("window.agentPage.step(100, false)")
             state = await page.evaluate("window.agentPage.state()")

@@ -1,6 +1,5 @@
 """A real server on a real port, in this process."""
 
-import asyncio
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,6 +18,7 @@ from agent_server.service.hub import Hub
 from agent_server.service.store import FolderStore
 from agent_server.transports.server import address, bind, serving
 from tests.support.models import fake_models
+from tests.support.patience import patience
 
 
 @dataclass
@@ -73,9 +73,9 @@ async def live(
         yield Live(address(listener, is_secure=is_secure), hub)
 
 
-async def next_of(client, kind, within_s=5.0):
+async def next_of(client, kind):
     """The next message of a type; others are passed over."""
-    async with asyncio.timeout(within_s):
+    async with patience():
         async for message in client:
             if isinstance(message, kind):
                 return message

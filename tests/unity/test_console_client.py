@@ -11,12 +11,12 @@ from agent_server.config import GateSettings, ServerSettings, Settings
 from agent_server.protocol import messages as m
 from tests.support.bodies import stream
 from tests.support.live import live
+from tests.support.patience import PATIENCE_S, patience, until
 from tests.unity.build import console_client, needs_mono
 
 pytestmark = needs_mono
 
 GESTURE = stream(6, hands_up=lambda t: 2 <= t < 4)
-WITHIN_S = 60.0
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -34,7 +34,7 @@ class Console:
 
     async def until(self, event, **fields):
         """The next line of an event with these fields; others are kept in ``said``."""
-        async with asyncio.timeout(WITHIN_S):
+        async with patience():
             async for line in self.process.stdout:
                 said = json.loads(line)
                 self.said.append(said)
@@ -45,7 +45,7 @@ class Console:
     async def goodbye(self):
         self.process.stdin.close()
         await self.until("end")
-        return await asyncio.wait_for(self.process.wait(), WITHIN_S)
+        return await asyncio.wait_for(self.process.wait(), PATIENCE_S)
 
     def events(self, event):
         return [said for said in self.said if said["event"] == event]
@@ -73,12 +73,6 @@ async def gesture(server):
         for frame in GESTURE:
             await sensor.send(frame)
             await asyncio.sleep(0.001)
-
-
-async def until(condition):
-    async with asyncio.timeout(WITHIN_S):
-        while not condition():  # noqa: ASYNC110 - several conditions, no event for them
-            await asyncio.sleep(0.01)
 
 
 @asynccontextmanager
@@ -178,7 +172,7 @@ async def test_a_taken_place_ends_the_client():
         async with console(server.url) as second:
             stopped = await second.until("phase", phase="stopped")
             assert stopped["fault"]
-            assert await asyncio.wait_for(second.process.wait(), WITHIN_S) == 1
+            assert await asyncio.wait_for(second.process.wait(), PATIENCE_S) == 1
 
 
 async def test_wrong_arguments_are_refused():

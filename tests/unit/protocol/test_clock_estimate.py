@@ -56,6 +56,16 @@ def test_a_jump_is_told_after_three_samples_and_followed_at_once():
     assert estimate.jumps == 1
 
 
+@pytest.mark.parametrize(("there_ns", "back_ns"), [(600 * MS, MS), (MS, 600 * MS)])
+def test_a_first_pong_that_was_slow_on_one_way_is_no_jump(there_ns, back_ns):
+    estimate = ClockEstimate()
+    exchange(estimate, 0, 0, there_ns, back_ns)
+    for index in range(1, 10):
+        assert exchange(estimate, index * 2000 * MS, 0) is None
+        assert abs(estimate.offset_ns) <= MS
+    assert estimate.jumps == 0
+
+
 def test_single_outliers_to_either_side_are_no_jump():
     estimate = ClockEstimate()
     exchange(estimate, 0, 0)

@@ -7,6 +7,7 @@ from contextlib import asynccontextmanager
 import pytest
 
 from agent_server.service.batcher import MAX_BATCH, Batcher
+from tests.support.patience import patience
 
 
 @asynccontextmanager
@@ -49,7 +50,7 @@ async def test_a_full_batch_waits_for_nobody():
     work = Doubling()
     async with running(Batcher("test", work, apart_s=60.0)) as batcher:
         await batcher.ask(0)
-        async with asyncio.timeout(10):
+        async with patience():
             await asyncio.gather(*[batcher.ask(number) for number in range(MAX_BATCH)])
     assert work.sizes == [1, MAX_BATCH]
 

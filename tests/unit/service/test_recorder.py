@@ -23,6 +23,7 @@ from agent_server.service import recorder as module
 from agent_server.service.recorder import Recorder, recorder, settings_hash
 from tests.support.bodies import stream
 from tests.support.models import fake_models
+from tests.support.patience import PATIENCE_S
 
 METADATA = RecordingMetadata("s", "test")
 
@@ -31,8 +32,8 @@ def settings(**recording):
     return Settings(recording=RecordingSettings(**recording))
 
 
-def wait_until(holds, within_s=5.0):
-    end_s = time.monotonic() + within_s
+def wait_until(holds):
+    end_s = time.monotonic() + PATIENCE_S
     while not holds():
         assert time.monotonic() < end_s
         time.sleep(0.01)

@@ -16,6 +16,7 @@ import pytest
 
 from tests.support.fault_proxy import FaultProxy
 from tests.support.faults import UP, Delay, Fault, How, Where, faults
+from tests.support.patience import until
 from tests.support.websocket_pieces import Form, Pieces
 
 REQUEST = b"GET /v1/sessions/s/renderer HTTP/1.1\r\nUpgrade: websocket\r\n\r\n"
@@ -138,12 +139,6 @@ async def read_on(reader):
     except ConnectionResetError:
         return got, "reset"
     return got, "fin"
-
-
-async def until(condition, within_s=5.0):
-    async with asyncio.timeout(within_s):
-        while not condition():  # noqa: ASYNC110 - what it asks knows no events
-            await asyncio.sleep(0.005)
 
 
 async def test_without_a_fault_bytes_pass_unchanged():

@@ -50,10 +50,29 @@ namespace AgentServer.Tests
         public void TheEstimateFollowsByAQuarter()
         {
             Pong(0, 10 * Ms);
+            Pong(4 * Ms, 8 * Ms);
+            Assert.AreEqual(1 * Ms, _estimate.OffsetNs);
+            Pong(4 * Ms, 9 * Ms);
+            Assert.AreEqual(1750000, _estimate.OffsetNs);
+        }
+
+        [Test]
+        public void TheEstimateDoesNotStayWhereTheBestSampleRulesItOut()
+        {
+            Pong(0, 10 * Ms);
             Pong(8 * Ms, 4 * Ms);
-            Assert.AreEqual(2 * Ms, _estimate.OffsetNs);
-            Pong(8 * Ms, 8 * Ms);
-            Assert.AreEqual(3500000, _estimate.OffsetNs);
+            Assert.AreEqual(6 * Ms, _estimate.OffsetNs);
+        }
+
+        [Test]
+        public void AFirstPongThatWasSlowOnOneWayIsNoJump()
+        {
+            Assert.IsTrue(!Pong(0, 600 * Ms, share: 1));
+            for (int sample = 0; sample < 10; sample++)
+            {
+                Assert.IsTrue(!Pong(0, 2 * Ms));
+                Assert.IsTrue(System.Math.Abs(_estimate.OffsetNs.Value) <= Ms);
+            }
         }
 
         [Test]
@@ -93,15 +112,15 @@ namespace AgentServer.Tests
         }
 
         [Test]
-        public void AToleranceOfFiftyMillisecondsAndHalfTheRoundTripHolds()
+        public void AToleranceOfFiftyMillisecondsAndHalfOfBothRoundTripsHolds()
         {
             Pong(0, 2 * Ms);
-            for (int sample = 0; sample < 5; sample++) Assert.IsTrue(!Pong(51 * Ms, 2 * Ms));
+            for (int sample = 0; sample < 5; sample++) Assert.IsTrue(!Pong(52 * Ms, 2 * Ms));
             _estimate.Reset();
             Pong(0, 2 * Ms);
-            Pong(51 * Ms + 1, 2 * Ms);
-            Pong(51 * Ms + 1, 2 * Ms);
-            Assert.IsTrue(Pong(51 * Ms + 1, 2 * Ms));
+            Pong(52 * Ms + 1, 2 * Ms);
+            Pong(52 * Ms + 1, 2 * Ms);
+            Assert.IsTrue(Pong(52 * Ms + 1, 2 * Ms));
         }
 
         [Test]

@@ -40,7 +40,7 @@ export class ClockEstimate {
       return null;
     }
     const awayNs = sample.offsetNs - this.offsetNs;
-    if (Math.abs(awayNs) <= TOLERANCE_NS + halfNs) {
+    if (Math.abs(awayNs) <= TOLERANCE_NS + halfNs + this.#offByNs) {
       this.#outliers = 0;
       this.#follow(sample, this.offsetNs);
       return null;
@@ -50,6 +50,11 @@ export class ClockEstimate {
     if (Math.abs(this.#outliers) < OUTLIERS) return null;
     this.#begin(sample);
     return awayNs;
+  }
+
+  /** How far the estimate may be off, by the sample that it goes by. */
+  get #offByNs(): number {
+    return Math.floor((this.roundTripNs ?? 0) / 2);
   }
 
   #begin(sample: Sample): void {
@@ -62,7 +67,9 @@ export class ClockEstimate {
   #follow(sample: Sample, offsetNs: number): void {
     this.#samples = [...this.#samples, sample].slice(-SAMPLES);
     const best = this.#samples.reduce((a, b) => (b.roundTripNs < a.roundTripNs ? b : a));
-    this.offsetNs = offsetNs + Math.floor((best.offsetNs - offsetNs) / GAIN);
     this.roundTripNs = best.roundTripNs;
+    const followedNs = offsetNs + Math.floor((best.offsetNs - offsetNs) / GAIN);
+    const [lowestNs, highestNs] = [best.offsetNs - this.#offByNs, best.offsetNs + this.#offByNs];
+    this.offsetNs = Math.min(Math.max(followedNs, lowestNs), highestNs);
   }
 }

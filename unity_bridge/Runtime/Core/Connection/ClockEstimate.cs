@@ -54,8 +54,18 @@ namespace AgentServer
             _count = Math.Min(_count + 1, SampleCount);
             int best = Best();
             RoundTripNs = _roundTrips[best];
-            OffsetNs = OffsetNs == null ? _offsets[best] : OffsetNs + (_offsets[best] - OffsetNs >> 2);
+            OffsetNs = OffsetNs == null ? _offsets[best] : Follow(OffsetNs.Value, _offsets[best]);
             return hasJumped;
+        }
+
+        /// <summary>How far the estimate may be off, by the sample that it goes by.</summary>
+        long OffByNs => (RoundTripNs ?? 0) / 2;
+
+        /// <summary>A quarter of the way to the best sample, and into the range in which it lies for sure.</summary>
+        long Follow(long offset, long best)
+        {
+            long followed = offset + (best - offset >> 2);
+            return Math.Min(Math.Max(followed, best - OffByNs), best + OffByNs);
         }
 
         /// <summary>Whether a sample lies too far from the estimate to be followed; counts such in a row.</summary>
@@ -64,7 +74,7 @@ namespace AgentServer
             if (OffsetNs == null) return false;
             long difference = offset - OffsetNs.Value;
             int side = Math.Sign(difference);
-            bool isAstray = Math.Abs(difference) > ToleranceNs + roundTrip / 2;
+            bool isAstray = Math.Abs(difference) > ToleranceNs + roundTrip / 2 + OffByNs;
             if (!isAstray) _astray = 0;
             else _astray = Math.Sign(_astray) == side ? _astray + side : side;
             return isAstray;
