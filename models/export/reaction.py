@@ -127,7 +127,7 @@ def write_graphs(network: Generator, folder: Path) -> None:
         (action, lengths),
         folder / ENCODER_FILE,
         ENCODE_INPUTS,
-        ("tokens", "bias", "seen", "probabilities"),
+        ("tokens", "bias", "seen", "kind"),
         ({0: batch, 1: action_frames}, {0: batch}),
     )
     with torch.no_grad():

@@ -6,12 +6,15 @@ The loop is one for torch and for an exported model: both are a :class:`Core`.
 from typing import NamedTuple, Protocol
 
 import torch
+import torch.nn.functional as F
 from torch import nn
 
 from models.data.interactions import PairFrame
 from models.interformer.generator.attention import Seen, nearness
 from models.interformer.generator.network import Generator
 
+EMPHASIS = 2.0
+"""How much farther than in training the kind lies from the mean of all; by pairs held out."""
 OVERLAP = 8
 """Frames that a segment of a long action shares with the one before it."""
 
@@ -23,7 +26,7 @@ class Read(NamedTuple):
         tokens: The encoder's, (B, S, D).
         bias: Hides padding, (B, 1, 1, S).
         seen: Keys and values for the decoder's layers, (L, 2, B, H, S, D / H).
-        kind: Probabilities of the kinds of interaction, (B, classes).
+        kind: What the decoder is told of the kind of interaction, (B, classes): :func:`emphasised`.
     """
 
     tokens: torch.Tensor
@@ -46,6 +49,18 @@ class Told(NamedTuple):
     past: torch.Tensor
 
 
+def emphasised(kind: torch.Tensor) -> torch.Tensor:
+    """Logits of kinds (B, classes) -> what the decoder is told, (B, classes); the sum is 1.
+
+    The most probable kind alone, for what is written for a mixture is a mean of several reactions,
+    and farther from the mean of all kinds than in training: guidance as Ho and Salimans have it
+    for diffusion ("Classifier-Free Diffusion Guidance", 2022).
+    """
+    one = F.one_hot(kind.argmax(-1), kind.shape[-1]).to(kind.dtype)
+    mean = 1 / kind.shape[-1]
+    return mean + EMPHASIS * (one - mean)
+
+
 class Encode(nn.Module):
     """The encoder with what the decoder asks of it: action (B, S, J, 3), lengths (B,) -> Read."""
 
@@ -57,7 +72,7 @@ class Encode(nn.Module):
         """Read actions."""
         memory = self.network.encode(action, lengths)
         seen = torch.stack([torch.stack(layer) for layer in memory.seen])
-        return Read(memory.tokens, memory.bias, seen, torch.softmax(memory.kind, dim=-1))
+        return Read(memory.tokens, memory.bias, seen, emphasised(memory.kind))
 
 
 class Step(nn.Module):
@@ -89,7 +104,7 @@ class Step(nn.Module):
             before: The one before; the same for the first.
             at: Number of this frame, int64, (1,).
             noise: (B, latent).
-            kind: Shares of the kinds of interaction, (B, classes).
+            kind: As :func:`emphasised`, (B, classes).
             past: Of the frames before this one, (L, 2, B, H, T, D / H).
             action_pose: Of the action now, (B, J, 3).
             action_token: The encoder's, (B, D).

@@ -216,7 +216,7 @@ class Generator(nn.Module):
         return Memory(action, tokens, bias, seen, kind)
 
     def told(self, kind: torch.Tensor, noise: torch.Tensor) -> torch.Tensor:
-        """Shares of kinds (B, classes) and noise (B, latent) -> for every token, (B, 1, D)."""
+        """What is said of the kind (B, classes), noise (B, latent) -> for every token, (B, 1, D)."""
         both: torch.Tensor = self.named(kind) + self.noise(noise)
         return both[:, None]
 
@@ -228,7 +228,7 @@ class Generator(nn.Module):
         Args:
             reaction: (B, T, J, 3), metres, at most as long as the actions.
             noise: (B, latent).
-            kind: Shares of the kinds of interaction, (B, classes).
+            kind: What is said of the kind of interaction, (B, classes); shares in training.
             memory: The actions.
         """
         frames = reaction.shape[1]

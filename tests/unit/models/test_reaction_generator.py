@@ -23,6 +23,7 @@ from models.interformer.generator.config import (  # noqa: E402
 from models.interformer.generator.generate import (  # noqa: E402
     OVERLAP,
     TorchCore,
+    emphasised,
     generate,
     react_to,
 )
@@ -53,7 +54,7 @@ def pairs(count: int = 5) -> Pairs:
 def written(network: Generator, some: Pairs, reaction: torch.Tensor, noise: torch.Tensor):
     with torch.no_grad():
         memory = network.encode(some.action, some.lengths)
-        return network.decode(reaction, noise, torch.softmax(memory.kind, -1), memory)
+        return network.decode(reaction, noise, emphasised(memory.kind), memory)
 
 
 @pytest.mark.parametrize("row", ABLATIONS)
@@ -107,6 +108,13 @@ def test_frame_by_frame_gives_what_all_at_once_gives(config: NetworkConfig) -> N
     assert lengths.tolist() == [8] * 5
     told = written(network, some, reaction, noise)
     torch.testing.assert_close(reaction[:, 1:], told.pose[:, :-1], atol=1e-5, rtol=1e-5)
+
+
+def test_the_most_probable_kind_alone_is_told_and_told_loudly() -> None:
+    kind = torch.tensor([[1.0, 3.0, 2.9, 0.0], [5.0, 0.0, 0.0, 4.0]])
+    told = emphasised(kind)
+    expected = [[-0.25, 1.75, -0.25, -0.25], [1.75, -0.25, -0.25, -0.25]]
+    torch.testing.assert_close(told, torch.tensor(expected))
 
 
 def test_a_reaction_ends_where_its_end_is_more_probable_than_not() -> None:
