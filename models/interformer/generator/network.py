@@ -216,7 +216,7 @@ class Generator(nn.Module):
         return Memory(action, tokens, bias, seen, kind)
 
     def told(self, kind: torch.Tensor, noise: torch.Tensor) -> torch.Tensor:
-        """What is said of the kind (B, classes), noise (B, latent) -> for every token, (B, 1, D)."""
+        """What is said of the kind (B, classes), noise (B, latent) -> of any token, (B, 1, D)."""
         both: torch.Tensor = self.named(kind) + self.noise(noise)
         return both[:, None]
 
