@@ -51,7 +51,7 @@ class WordEncoder(nn.Module):
         mixed = F.scaled_dot_product_attention(q, k, v, bias)
         x = x + self.out(mixed.transpose(1, 2).flatten(2))
         x = x + self.dense(x)
-        share = counts / counts.sum(1, keepdim=True)
+        share = counts / counts.sum(1, keepdim=True).clamp(min=1)  # a hidden label has no words
         return x, (x * share[..., None]).sum(1)
 
 
@@ -174,6 +174,36 @@ class Denoiser(nn.Module):
         both = torch.cat([norm(x) for norm, x in zip(self.norm, people, strict=True)], dim=-1)
         clean: torch.Tensor = self.out(both).unflatten(-1, (PEOPLE, self.config.joints, 3))
         return clean.transpose(1, 2)
+
+
+class Guided(nn.Module):
+    """A denoiser that is led by the label: it goes on from what it would make without one.
+
+    Ho and Salimans, "Classifier-Free Diffusion Guidance" (NeurIPS workshop 2021).
+    """
+
+    def __init__(self, network: Denoiser) -> None:
+        super().__init__()
+        self.network = network
+
+    def forward(
+        self,
+        noisy: torch.Tensor,
+        lengths: torch.Tensor,
+        step: torch.Tensor,
+        words: torch.Tensor,
+    ) -> torch.Tensor:
+        """As :meth:`Denoiser.forward`."""
+        words = torch.cat([words, torch.zeros_like(words)])
+        both = self.network(*(torch.cat([one, one]) for one in (noisy, lengths, step)), words)
+        named, unnamed = both.chunk(2)
+        led: torch.Tensor = unnamed + self.network.config.guidance * (named - unnamed)
+        return led
+
+
+def to_draw_with(network: Denoiser) -> Denoiser | Guided:
+    """What takes the noise away in draws."""
+    return network if network.config.guidance == 1 else Guided(network)
 
 
 def waves(at: torch.Tensor, width: int) -> torch.Tensor:

@@ -57,6 +57,9 @@ class Learner:
         given = noised(clean, noise, step, self.left)
         self.network.train()
         words = self.tokens[pairs.labels]
+        if config.network.guidance != 1:
+            kept = torch.rand(len(pairs), 1, generator=generator) >= config.hidden
+            words = words * kept
         found = self.network(
             *(each.to(self.device) for each in (given, pairs.lengths, step, words))
         )

@@ -1,4 +1,4 @@
-"""BiGraphDiff measured: its bundle, and the paper's four rows, each trained where it is not."""
+"""BiGraphDiff measured: its bundle, and the paper's rows and ours, each trained where it is not."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,6 +10,7 @@ import torch
 from agent_server.errors import ConfigError
 from models.bigraphdiff.config import ABLATIONS, CONFIGS, TrainConfig, ablated
 from models.bigraphdiff.generate import Generator
+from models.bigraphdiff.network import to_draw_with
 from models.bigraphdiff.onnx_denoiser import read_generator
 from models.bigraphdiff.train import load_denoiser, train_on
 from models.bigraphdiff.words import tokens
@@ -34,7 +35,8 @@ def interacting(generator: Generator) -> Interact:
 def run_generator(folder: Path, spec: InteractionSet) -> Generator:
     """The generator of a training run on a set."""
     network, normaliser = load_denoiser(folder)
-    return Generator.of(network, normaliser, tokens(spec.labels), network.config)
+    words = tokens(spec.labels)
+    return Generator.of(to_draw_with(network), normaliser, words, network.config)
 
 
 def pair_bundle_report(spec: InteractionSet, data: Path, runs: Path) -> dict[str, Any]:
@@ -63,7 +65,7 @@ def pair_rows_report(
     rows: Sequence[str] | None = None,
     steps: int | None = None,
 ) -> dict[str, Any]:
-    """The paper's rows, each trained unless its run is in ``runs``.
+    """The paper's rows and ours, each trained unless its run is in ``runs``.
 
     Args:
         spec: The data set.

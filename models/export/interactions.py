@@ -18,7 +18,7 @@ from models.bigraphdiff.config import NetworkConfig
 from models.bigraphdiff.diffusion import Denoise, Normaliser
 from models.bigraphdiff.generate import Generator
 from models.bigraphdiff.manifest import NORMALISER_FILE, InteractionManifest
-from models.bigraphdiff.network import PEOPLE, Denoiser
+from models.bigraphdiff.network import PEOPLE, Denoiser, to_draw_with
 from models.bigraphdiff.onnx_denoiser import INPUTS, OUTPUT, open_denoiser
 from models.bigraphdiff.train import load_denoiser
 from models.bigraphdiff.words import tokens
@@ -111,7 +111,7 @@ def write_denoiser(network: Denoiser, path: Path) -> None:
     batch = Dim("batch", min=1, max=1024)
     length = Dim("frames", min=1, max=config.frames)
     write_graph(
-        network,
+        to_draw_with(network),
         (
             torch.randn(count, PEOPLE, frames, config.joints, 3),
             torch.tensor([9, 7, 5]),
@@ -146,7 +146,7 @@ def check_parity(network: Denoiser, denoise: Denoise, given: tuple[torch.Tensor,
         BundleError: If it is above 1e-4.
     """
     with torch.no_grad():
-        expected = network(*given)
+        expected = to_draw_with(network)(*given)
     noisy, lengths, step, words = given
     worst = float((expected - denoise(noisy, lengths, step, words)).abs().max())
     return require_close(worst)
