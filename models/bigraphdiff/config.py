@@ -82,6 +82,9 @@ class TrainConfig:
         scale: Largest change of size.
         velocity: Weight of the errors of steps from frame to frame.
         hidden: Share of interactions whose label is hidden, where there is guidance.
+        noisiest: Share of interactions at one of the noisiest fifth of the steps on top of those
+            that come there by chance, where there is guidance: there the label decides what a
+            draw becomes.
         ema: Decay of the averaged weights.
         save_every: Updates between two checkpoints.
     """
@@ -95,6 +98,7 @@ class TrainConfig:
     scale: float = 0.1
     velocity: float = 5.0
     hidden: float = 0.15
+    noisiest: float = 0.5
     ema: float = 0.995
     save_every: int = 100
 

@@ -52,12 +52,17 @@ class Learner:
         noise = torch.randn(clean.shape, generator=generator)
         steps = config.network.steps
         step = torch.randint(steps, (len(pairs),), generator=generator)
+        is_led = config.network.guidance != 1
+        if is_led:
+            high = steps - 1 - torch.randint(steps // 5, (len(pairs),), generator=generator)
+            chosen = torch.rand(len(pairs), generator=generator) < config.noisiest
+            step = torch.where(chosen, high, step)
         if not config.network.diffusion:
             step = torch.full_like(step, steps - 1)
         given = noised(clean, noise, step, self.left)
         self.network.train()
         words = self.tokens[pairs.labels]
-        if config.network.guidance != 1:
+        if is_led:
             kept = torch.rand(len(pairs), 1, generator=generator) >= config.hidden
             words = words * kept
         found = self.network(

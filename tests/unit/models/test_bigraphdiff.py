@@ -359,12 +359,14 @@ def test_contradictions_are_refused() -> None:
         network_for("ballet")
 
 
-def test_labels_are_hidden_in_training_only_where_draws_are_led(monkeypatch) -> None:
+def test_labels_are_hidden_and_noise_is_high_only_where_draws_are_led(monkeypatch) -> None:
     seen: list[torch.Tensor] = []
+    at: list[torch.Tensor] = []
     heard = Denoiser.forward
 
     def forward(self, noisy, lengths, step, words):
         seen.append(words)
+        at.append(step)
         return heard(self, noisy, lengths, step, words)
 
     monkeypatch.setattr(Denoiser, "forward", forward)
@@ -374,6 +376,10 @@ def test_labels_are_hidden_in_training_only_where_draws_are_led(monkeypatch) -> 
     without, led = ((words == 0).all(1).float().mean() for words in seen)
     assert without == 0
     assert 0.05 < led < 0.3
+    last = SMALL.steps - SMALL.steps // 5
+    without, led = ((step >= last).float().mean() for step in at)
+    assert without < 0.35
+    assert 0.45 < led < 0.75
 
 
 def test_long_recordings_fit_the_sets_that_have_them() -> None:
