@@ -194,16 +194,18 @@ class Guided(nn.Module):
         words: torch.Tensor,
     ) -> torch.Tensor:
         """As :meth:`Denoiser.forward`."""
-        words = torch.cat([words, torch.zeros_like(words)])
-        both = self.network(*(torch.cat([one, one]) for one in (noisy, lengths, step)), words)
-        named, unnamed = both.chunk(2)
+        twice = (torch.stack([one, one]).flatten(0, 1) for one in (noisy, lengths, step))
+        words = torch.stack([words, torch.zeros_like(words)]).flatten(0, 1)
+        named, unnamed = self.network(*twice, words).unflatten(0, (2, -1)).unbind()
         led: torch.Tensor = unnamed + self.network.config.guidance * (named - unnamed)
         return led
 
 
 def to_draw_with(network: Denoiser) -> Denoiser | Guided:
     """What takes the noise away in draws."""
-    return network if network.config.guidance == 1 else Guided(network)
+    if network.config.guidance == 1:
+        return network
+    return Guided(network).train(network.training)
 
 
 def waves(at: torch.Tensor, width: int) -> torch.Tensor:

@@ -29,7 +29,13 @@ from models.evaluation.interaction_pairs import PairCourt
 from models.evaluation.latency import percentiles_ms
 from models.export.bundle import RESEARCH_LICENCE
 from models.export.interactions_card import interactions_card
-from models.export.onnx import OPSET, require_close, store_halves, write_graph
+from models.export.onnx import (
+    OPSET,
+    require_close,
+    round_weights,
+    store_halves,
+    write_graph,
+)
 from models.export.publish import publish, training_of
 from models.training.run import read_info
 
@@ -124,13 +130,6 @@ def write_denoiser(network: Denoiser, path: Path) -> None:
         ({0: batch, 2: length}, {0: batch}, {0: batch}, {0: batch}),
     )
     store_halves(path)
-
-
-@torch.no_grad()
-def round_weights(network: Denoiser) -> None:
-    """Round to what 16 bits hold, so that the bundle is half as large."""
-    for weight in network.parameters():
-        weight.copy_(weight.half().float())
 
 
 def write_normaliser(normaliser: Normaliser, path: Path) -> None:

@@ -97,6 +97,13 @@ def _plain(model: onnx.ModelProto) -> onnx.ModelProto:
     return model
 
 
+@torch.no_grad()
+def round_weights(network: nn.Module) -> None:
+    """Round to what 16 bits hold, so that :func:`store_halves` makes the file half as large."""
+    for weight in network.parameters():
+        weight.copy_(weight.half().float())
+
+
 def store_halves(path: Path) -> None:
     """Keep in 16 bits, in place, what 16 bits hold exactly; it is computed with as before.
 

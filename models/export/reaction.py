@@ -23,7 +23,13 @@ from models.evaluation.interaction_rows import reacting
 from models.evaluation.latency import reaction_latency
 from models.evaluation.reaction_quality import quality_report
 from models.export.bundle import RESEARCH_LICENCE
-from models.export.onnx import OPSET, require_close, write_graph
+from models.export.onnx import (
+    OPSET,
+    require_close,
+    round_weights,
+    store_halves,
+    write_graph,
+)
 from models.export.publish import publish, training_of
 from models.export.reaction_card import reaction_card
 from models.export.reaction_range import training_range
@@ -63,6 +69,7 @@ def export_reaction(
     network, info = load_generator(run), read_info(run)
     config, spec = network.config, INTERACTION_SETS[info["config"]["data"]]
     court = Court.thesis(spec, data, runs)
+    round_weights(network)
     with tempfile.TemporaryDirectory() as scratch:
         draft = Path(scratch) / folder.name
         draft.mkdir()
@@ -157,6 +164,8 @@ def write_graphs(network: Generator, folder: Path) -> None:
             {2: batch, 4: action_frames},
         ),
     )
+    for file in (ENCODER_FILE, MODEL_FILE):
+        store_halves(folder / file)
 
 
 def write_quality(network: Quality, path: Path) -> None:

@@ -31,11 +31,8 @@ from models.evaluation import interaction  # noqa: E402
 from models.evaluation.interaction_pair_rows import interacting, run_generator  # noqa: E402
 from models.evaluation.interaction_pairs import PairCourt, multimodality, nearest_mm  # noqa: E402
 from models.evaluation.recurrent import JudgeConfig  # noqa: E402
-from models.export.interactions import (  # noqa: E402
-    export_interactions,
-    golden_input,
-    round_weights,
-)
+from models.export.interactions import export_interactions, golden_input  # noqa: E402
+from models.export.onnx import round_weights  # noqa: E402
 from models.training.run import Run  # noqa: E402
 from tests.support.interactions import interactions, write_sbu  # noqa: E402
 
