@@ -16,7 +16,7 @@ from models.data.interactions import TORSO, Pairs
 
 DRAWN_STEPS = 50
 """Steps of a draw; as many calls of the network."""
-LED = 0.5
+LED = 0.3
 """Share of the steps in which known frames stand in for what the network makes of them."""
 LEAST_DEVIATION = 0.1
 """Metres; joints that hardly move are not made as large as hands."""

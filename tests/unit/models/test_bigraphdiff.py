@@ -31,7 +31,11 @@ from models.evaluation import interaction  # noqa: E402
 from models.evaluation.interaction_pair_rows import interacting, run_generator  # noqa: E402
 from models.evaluation.interaction_pairs import PairCourt, multimodality, nearest_mm  # noqa: E402
 from models.evaluation.recurrent import JudgeConfig  # noqa: E402
-from models.export.interactions import export_interactions, golden_input  # noqa: E402
+from models.export.interactions import (  # noqa: E402
+    export_interactions,
+    golden_input,
+    write_denoiser,
+)
 from models.export.onnx import round_weights  # noqa: E402
 from models.training.run import Run  # noqa: E402
 from tests.support.interactions import interactions, write_sbu  # noqa: E402
@@ -104,6 +108,19 @@ def test_guidance_goes_on_from_what_no_label_makes() -> None:
     assert not torch.allclose(named, unnamed)
     torch.testing.assert_close(led - unnamed, config.guidance * (named - unnamed))
     assert isinstance(to_draw_with(network()), Denoiser), "without guidance one call is enough"
+
+
+def test_an_exported_step_is_led_for_any_batch(tmp_path: Path) -> None:
+    made = network(ablated(TrainConfig(SMALL, "sbu"), "guided").network)
+    write_denoiser(made, tmp_path / "model.onnx")
+    denoise = open_denoiser(tmp_path / "model.onnx")
+    noisy, lengths, step, words = given(made.config)
+    for count in (1, 4):
+        some = noisy[:count], lengths[:count], step[:count], words[:count]
+        with torch.no_grad():
+            torch.testing.assert_close(
+                denoise(*some), to_draw_with(made)(*some), atol=1e-4, rtol=1e-4
+            )
 
 
 def test_padding_changes_nothing_and_every_input_counts() -> None:
