@@ -34,9 +34,10 @@ def write_pair_strip(path: Path, action: Float32, reaction: Float32, title: str)
         for person, colour in ((action, QUIET), (reaction, TRUTH)):
             pose = person[min(round(at), len(person) - 1)]
             _draw(canvas, pose[:, [0, 1]] + [column * step, 0.0], colour)
-        canvas.text(
-            column * step + low[0], low[1] - 0.12, f"frame {round(at)}", color=INK, fontsize=7
-        )
+        # The floor that the two stand on, so that nobody is taken for a neighbour's partner.
+        floor = column * step + low[0], column * step + high[0]
+        canvas.plot(floor, [low[1] - 0.03] * 2, color=QUIET, linewidth=0.8)
+        canvas.text(floor[0], low[1] - 0.07, f"frame {round(at)}", color=INK, fontsize=7, va="top")
     canvas.set_title(title, color=INK, fontsize=9, y=0.9)
     canvas.set_xlim(low[0] - 0.1, low[0] + MOMENTS * step)
     canvas.set_ylim(low[1] - 0.25, high[1] + 0.35)
