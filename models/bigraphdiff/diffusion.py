@@ -16,7 +16,7 @@ from models.data.interactions import TORSO, Pairs
 
 DRAWN_STEPS = 50
 """Steps of a draw; as many calls of the network."""
-LED = 0.3
+HELD = 0.3
 """Share of the steps in which known frames stand in for what the network makes of them."""
 LEAST_DEVIATION = 0.1
 """Metres; joints that hardly move are not made as large as hands."""
@@ -127,7 +127,7 @@ def draw(
         clean = denoise(moment, lengths, torch.full_like(lengths, step), words)
         is_last = place + 1 == len(at)
         # Known frames lead the coarse steps; to the end they would tear off from the next ones.
-        if known is not None and (is_last or place < LED * len(at)):
+        if known is not None and (is_last or place < HELD * len(at)):
             clean = _with_beginning(clean, known, fades=is_last)
         if is_last:
             break

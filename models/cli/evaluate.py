@@ -258,7 +258,8 @@ def evaluate_interaction(
         ),
     ] = "bundle",
     row: Annotated[
-        list[str] | None, typer.Option("--row", help="Of rows: S1, S2, S3 or S4; all if left out.")
+        list[str] | None,
+        typer.Option("--row", help="Of rows: S1 to S4, or bigraphdiff's guided; all if left out."),
     ] = None,
     steps: Annotated[
         int | None,
